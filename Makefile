@@ -1,0 +1,64 @@
+# Each target sets up .venv by itself from the lock files in requirements/, once; after that nothing here needs the network.
+# Assumed: Python 3.11 or newer with venv, make, git.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+PIP    := $(BIN)/python -m pip --disable-pip-version-check
+CORE   := $(VENV)/core.stamp
+DEV    := $(VENV)/dev.stamp
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint format docs bench lock clean
+
+help:
+	@echo "make demo    from a measurement to a shaper and its report, in demo-report/"
+	@echo "make test    the tests          make lint   style, types, rooms of the house"
+	@echo "make docs    the documentation  make bench  the benchmarks"
+	@echo "make lock    renew the lock files (needs uv)"
+
+demo: $(CORE)
+	$(BIN)/preshape calibrate examples/data/gantry_x.csv --out demo-report
+
+test: $(DEV)
+	$(BIN)/python -m pytest $(ARGS)
+
+lint: $(DEV)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format: $(DEV)
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+docs: $(DEV)
+	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
+	@echo "docs/_build/html/index.html"
+
+bench: $(DEV)
+	$(BIN)/python benchmarks/run_all.py
+
+lock:
+	uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-header --group dev pyproject.toml -o requirements/dev.txt
+	uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-header --group build -c requirements/dev.txt pyproject.toml -o requirements/core.txt
+
+clean:
+	rm -rf $(VENV) demo-report docs/_build
+
+$(VENV)/bin/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	  echo "preshape needs Python 3.11 or newer; '$(PYTHON)' is $$($(PYTHON) --version 2>&1). Say: make PYTHON=python3.12 ..."; exit 2; }
+	@echo "== setting up $(VENV) with $$($(PYTHON) --version)"
+	$(PYTHON) -m venv $(VENV)
+
+$(CORE): $(VENV)/bin/python requirements/core.txt pyproject.toml
+	@echo "== installing what preshape needs (locked in requirements/core.txt; about a minute the first time)"
+	$(PIP) install --require-hashes -r requirements/core.txt
+	$(PIP) install --quiet --no-deps --no-build-isolation --no-index --editable .
+	@touch $@
+
+$(DEV): $(CORE) requirements/dev.txt
+	@echo "== installing what tests, lint and documentation need (locked in requirements/dev.txt)"
+	$(PIP) install --require-hashes -r requirements/dev.txt
+	@touch $@
