@@ -1,8 +1,8 @@
 """Commands that do not shake machines: the public names, re-exported; nothing else."""
 
-from preshape import vibration
+from preshape import design, vibration
 from preshape.mode import Mode, Modes
 from preshape.provenance import Certificate, Design
 from preshape.shaper import Shaper
 
-__all__ = ["Certificate", "Design", "Mode", "Modes", "Shaper", "vibration"]
+__all__ = ["Certificate", "Design", "Mode", "Modes", "Shaper", "design", "vibration"]

@@ -1,0 +1,66 @@
+"""Direct multi-mode shapers: the shortest positive impulses with zero vibration at all modes, proved shortest.
+
+Hyde (ch. 3) solved the zero-vibration equations of all modes at once instead of convolving a shaper a mode, and saved
+16-25 % of the duration, without knowing whether a shorter one exists. The engine finds the shortest and proves it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from preshape.design.each_mode import recorded, whole_number
+from preshape.engine import shortest_positive
+from preshape.errors import InputError
+from preshape.mode import Modes, ModesLike
+from preshape.provenance import Design
+from preshape.shaper import Shaper
+
+__all__ = ["direct"]
+
+HIGHEST_ORDER = 6
+
+
+def direct(modes: ModesLike, order: int | Iterable[int] = 1) -> Shaper:
+    """The shortest positive shaper with zero vibration, and `order` vanishing derivatives, at every mode.
+
+    Parameters
+    ----------
+    modes : Mode, (frequency, damping) or several
+        Frequencies [Hz], damping ratios [-].
+    order : int or one a mode
+        0: zero vibration only (as ZV), 1: and zero slope (as ZVD, Hyde's choice), 2: as ZVDD ...
+
+    Returns
+    -------
+    Shaper
+        ``design.status`` is "optimal" with ``design.certificate`` proving that no positive shaper is shorter, or
+        "feasible" when the proof did not succeed: the constraints hold all the same, and ``design.settings["gap"]`` is
+        the fraction of the duration that a shorter one could save at most.
+
+    Raises
+    ------
+    InputError
+        If a mode or an order is out of range.
+
+    References
+    ----------
+    Hyde, chapter 3; the optimality system is in the engine's documentation.
+
+    Examples
+    --------
+    >>> shaper = direct([(0.20, 0.0), (0.26, 0.0), (0.45, 0.0), (0.59, 0.0)])
+    >>> round(shaper.duration, 6), len(shaper), shaper.design.status
+    (10.674024, 9, 'optimal')
+    """
+    wanted = Modes(modes)
+    given = [order] * len(wanted) if isinstance(order, int) else list(order)
+    if len(given) != len(wanted):
+        raise InputError(f"{len(given)} orders for {len(wanted)} modes: give one number, or one a mode.")
+    orders = tuple(whole_number("order", value, 0, HIGHEST_ORDER) for value in given)
+    found = shortest_positive(wanted, orders)
+    settings: dict[str, object] = {"order": orders[0] if len(set(orders)) == 1 else list(orders)}
+    if found.certificate is None:
+        settings["gap"] = found.gap
+    status = "feasible" if found.certificate is None else "optimal"
+    shaper = Shaper.normalised(found.times, found.amplitudes)
+    return recorded(shaper, Design("direct", wanted, settings, status, certificate=found.certificate))

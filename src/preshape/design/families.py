@@ -1,0 +1,41 @@
+"""The list of families: adding one is a file of its own and a line here; the laws in tests/laws.py then run on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+from preshape.design.derivative import zv, zvd, zvdd, zvdk
+from preshape.design.direct import direct
+from preshape.design.ei import ei, k_hump_ei, three_hump_ei, two_hump_ei
+from preshape.design.mzv import mzv
+from preshape.errors import InputError
+from preshape.shaper import Shaper
+
+__all__ = ["CLOSED_FAMILIES", "FAMILIES", "family_named"]
+
+CLOSED_FAMILIES: Mapping[str, Callable[..., Shaper]] = MappingProxyType(
+    {
+        "zv": zv,
+        "zvd": zvd,
+        "zvdd": zvdd,
+        "zvdk": zvdk,
+        "mzv": mzv,
+        "ei": ei,
+        "two_hump_ei": two_hump_ei,
+        "three_hump_ei": three_hump_ei,
+        "k_hump_ei": k_hump_ei,
+    }
+)
+"""One mode at a time; several modes by convolution."""
+
+FAMILIES: Mapping[str, Callable[..., Shaper]] = MappingProxyType({**CLOSED_FAMILIES, "direct": direct})
+"""Every family that takes modes and returns a shaper."""
+
+
+def family_named(name: str) -> Callable[..., Shaper]:
+    """The design function of a closed family; InputError naming the families there are."""
+    try:
+        return CLOSED_FAMILIES[name]
+    except KeyError:
+        raise InputError(f"there is no family {name!r}: choose one of {', '.join(CLOSED_FAMILIES)}.") from None
