@@ -269,6 +269,8 @@ def _merged(
     group = np.concatenate([[0], np.cumsum(np.diff(t) > COINCIDENT * max(float(t[-1]), np.finfo(float).tiny))])
     total = np.bincount(group, a)
     size = np.bincount(group, np.abs(a))
-    centre = np.bincount(group, np.abs(a) * t) / np.where(size > 0.0, size, 1.0)
+    first = t[np.flatnonzero(np.diff(group, prepend=-1.0))]
+    offset = np.bincount(group, np.abs(a) * (t - first[group]))
+    centre = first + offset / np.where(size > 0.0, size, 1.0)
     keep = total != 0.0
     return centre[keep] - centre[keep][0], total[keep]

@@ -80,7 +80,7 @@ def tolerated_bands(
     slopes = slope(grid)
     turning = [
         float(brentq(lambda f: float(slope(np.array([f]))[0]), grid[k], grid[k + 1], xtol=1e-15, rtol=8.9e-16))
-        for k in np.flatnonzero(slopes[:-1] * slopes[1:] < 0.0)
+        for k in np.flatnonzero((slopes[:-1] >= 0.0) != (slopes[1:] >= 0.0))
     ]
     nodes = np.unique([f_low, *turning, f_high])
     values = vibration(nodes)

@@ -1,0 +1,62 @@
+"""`preshape calibrate FILE...`"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from preshape.cli.options import sample_rate_option, tolerance_option
+
+__all__ = ["command"]
+
+
+@click.command("calibrate")
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option(
+    "--max-impulses",
+    "maximum_impulses",
+    type=click.IntRange(min=2),
+    metavar="N",
+    help="Most impulses the controller holds.",
+)
+@tolerance_option("Part of the measured vibration that may remain.", 0.05)
+@click.option(
+    "--damping",
+    type=float,
+    metavar="Z",
+    help="Damping ratio of the modes, if you know it better than the file shows it.",
+)
+@sample_rate_option()
+@click.option(
+    "--out",
+    type=click.Path(file_okay=False, path_type=Path),
+    metavar="DIR",
+    help="Folder for shaper.json, the figure and the report.",
+)
+def command(
+    files: tuple[str, ...],
+    maximum_impulses: int | None,
+    tolerance: float,
+    damping: float | None,
+    sample_rate: float | None,
+    out: Path | None,
+) -> None:
+    """From vibration measurements of one axis to a shaper: modes, candidates, choice and reason.
+
+    FILE is a Klipper raw_data, resonances or calibration_data file, a RepRapFirmware capture, or a CSV table with a
+    time column; several files of one machine are served by one shaper.
+    """
+    from preshape.cli.screens import calibration_screen, console
+    from preshape.workflow import calibrate, save_calibration
+
+    with console(stderr=True).status("reading, finding the modes, designing ..."):
+        calibration = calibrate(
+            files, maximum_impulses=maximum_impulses, tolerance=tolerance, damping=damping, sample_rate=sample_rate
+        )
+        saved = save_calibration(calibration, out) if out is not None else None
+    calibration_screen(calibration)
+    if saved is None:
+        click.echo("Nothing was written; --out DIR writes shaper.json, the figure and the report.")
+    else:
+        click.echo(f"Report: {saved.report}\nFigure: {saved.figure}\nShaper: {saved.shaper}")

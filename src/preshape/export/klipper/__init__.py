@@ -1,0 +1,43 @@
+"""Klipper: its shapers as it executes them, its spectrum, its score of any shaper, and its recommendation."""
+
+from preshape.export.klipper.families import FAMILIES, KlipperFamily, ei, mzv, three_hump_ei, two_hump_ei, zv, zvd
+from preshape.export.klipper.recommend import KlipperRecommendation, fit, recommend
+from preshape.export.klipper.scoring import (
+    KlipperScore,
+    maximum_acceleration,
+    remaining_vibration,
+    score,
+    smoothing,
+)
+from preshape.export.klipper.spectra import Spectrum
+from preshape.export.klipper.spectrum import (
+    AccelerationSpectrum,
+    normalise_to_frequencies,
+    power_spectral_density,
+)
+from preshape.export.klipper.tuning import KlipperFit, tune
+
+__all__ = [
+    "FAMILIES",
+    "AccelerationSpectrum",
+    "KlipperFamily",
+    "KlipperFit",
+    "KlipperRecommendation",
+    "KlipperScore",
+    "Spectrum",
+    "ei",
+    "fit",
+    "maximum_acceleration",
+    "mzv",
+    "normalise_to_frequencies",
+    "power_spectral_density",
+    "recommend",
+    "remaining_vibration",
+    "score",
+    "smoothing",
+    "three_hump_ei",
+    "tune",
+    "two_hump_ei",
+    "zv",
+    "zvd",
+]

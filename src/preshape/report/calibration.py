@@ -1,0 +1,127 @@
+"""What a calibration has to show: the measurement, its modes, the candidates, the choice, and the simulated move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from preshape.export.klipper import KlipperFit, KlipperScore
+from preshape.identify import Identification, IdentifiedMode
+from preshape.shaper import Shaper
+
+__all__ = ["Calibration", "Candidate", "MeasuredFile", "SimulatedMove"]
+
+
+@dataclass(frozen=True)
+class MeasuredFile:
+    """One measurement and what was found in it.
+
+    Parameters
+    ----------
+    name : str
+        The file's name without its folder.
+    identification : Identification
+        Modes, fitted curve, troubles.
+    frequencies : ndarray, shape (frequency,)
+        [Hz], of the spectrum on which shapers are scored.
+    power : ndarray, shape (frequency,)
+        Power on that grid, summed over the axes; a sweep's divided by frequency as Klipper does.
+    """
+
+    name: str
+    identification: Identification
+    frequencies: NDArray[np.float64]
+    power: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A shaper that was considered.
+
+    Parameters
+    ----------
+    name : str
+        Family and, for a tuned family, its frequency: "mzv at 57.0 Hz".
+    shaper : Shaper
+        The impulses.
+    score : KlipperScore
+        Remaining vibration [-], smoothing [mm], maximum acceleration [mm/s^2] on the measured spectra.
+    excluded : str
+        Why it may not be chosen; empty when it may.
+    """
+
+    name: str
+    shaper: Shaper
+    score: KlipperScore
+    excluded: str = ""
+
+
+@dataclass(frozen=True)
+class SimulatedMove:
+    """The identified modes during a point-to-point move, unshaped and shaped.
+
+    Parameters
+    ----------
+    times : ndarray, shape (time,)
+        [s] from the start of the move.
+    unshaped, shaped : ndarray, shape (time,)
+        Vibration, relative to the largest that the unshaped move leaves behind.
+    end_unshaped, end_shaped : float
+        When the commands end [s].
+    left : float
+        Largest vibration that the shaped move leaves, relative to the unshaped one [-].
+    """
+
+    times: NDArray[np.float64]
+    unshaped: NDArray[np.float64]
+    shaped: NDArray[np.float64]
+    end_unshaped: float
+    end_shaped: float
+    left: float
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """The outcome of :func:`preshape.workflow.calibrate`.
+
+    Parameters
+    ----------
+    files : tuple of MeasuredFile
+        In the order given.
+    modes : tuple of IdentifiedMode
+        Merged over the files, the most important first; empty when none was found.
+    candidates : tuple of Candidate
+        The best first.
+    chosen : Candidate
+        One of them.
+    reason : str
+        One sentence why.
+    klipper : KlipperFit
+        What Klipper itself would recommend on the same spectra, for comparison.
+    trouble : tuple of str
+        What is wrong with the machine or the measurement, as sentences; empty when healthy.
+    move : SimulatedMove or None
+        None when no mode was found.
+    tolerance : float
+        Remaining vibration that was allowed [-].
+    maximum_impulses : int or None
+        Limit of the controller.
+    """
+
+    files: tuple[MeasuredFile, ...]
+    modes: tuple[IdentifiedMode, ...]
+    candidates: tuple[Candidate, ...]
+    chosen: Candidate
+    reason: str
+    klipper: KlipperFit
+    trouble: tuple[str, ...]
+    move: SimulatedMove | None
+    tolerance: float
+    maximum_impulses: int | None
+
+    @property
+    def shaper(self) -> Shaper:
+        """The chosen shaper."""
+        return self.chosen.shaper

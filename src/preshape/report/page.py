@@ -1,0 +1,146 @@
+"""The one-page HTML report of a calibration: one file, no external resource, prints on one sheet."""
+
+from __future__ import annotations
+
+from html import escape
+
+from preshape.report.calibration import Calibration, Candidate
+from preshape.report.calibration_figure import calibration_figure
+from preshape.report.figures import as_svg
+
+__all__ = ["calibration_page"]
+
+STYLE = """
+:root { --ink: #1a1a1a; --soft: #5b5b5b; --line: #dcdcdc; --accent: #0b5fa5; --warn: #9a3b00; }
+* { box-sizing: border-box; }
+body { font: 15px/1.45 system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; color: var(--ink);
+  max-width: 62rem; margin: 1.5rem auto; padding: 0 1rem; background: #fff; }
+h1 { font-size: 1.45rem; margin: 0 0 .2rem; color: var(--accent); }
+h2 { font-size: 1.05rem; margin: 1.4rem 0 .4rem; }
+p { margin: .3rem 0; }
+.reason { font-size: 1.05rem; }
+.trouble { border-left: 5px solid var(--warn); background: #fff4ec; padding: .5rem .8rem; margin: .8rem 0; }
+.trouble strong { color: var(--warn); }
+.tables { overflow-x: auto; }
+table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
+th, td { padding: .28rem .6rem; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; }
+th:first-child, td:first-child, td.note { text-align: left; }
+td.note { white-space: normal; color: var(--soft); }
+th { font-weight: 600; color: var(--soft); vertical-align: bottom; }
+tr.chosen td { font-weight: 700; color: var(--accent); }
+tr.excluded td { color: #8a8a8a; }
+svg { width: 100%; height: auto; }
+footer { color: var(--soft); font-size: .85rem; margin-top: 1.2rem; border-top: 1px solid var(--line);
+  padding-top: .5rem; }
+@media print { body { margin: 0; max-width: none; font-size: 11px; } h2 { margin-top: .8rem; } }
+"""
+
+
+def calibration_page(calibration: Calibration, version: str) -> str:
+    """The report as HTML text.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        From :func:`preshape.workflow.calibrate`.
+    version : str
+        Of preshape, for the foot of the page.
+    """
+    names = ", ".join(file.name for file in calibration.files)
+    figure = as_svg(calibration_figure(calibration))
+    parts = [
+        "<!doctype html>",
+        '<html lang="en"><head><meta charset="utf-8">',
+        '<meta name="viewport" content="width=device-width, initial-scale=1">',
+        f"<title>preshape: {escape(calibration.chosen.name)} for {escape(names)}</title>",
+        f"<style>{STYLE}</style></head><body>",
+        f"<h1>Use {escape(calibration.chosen.name)}</h1>",
+        f'<p class="reason">{escape(calibration.reason)}</p>',
+        _trouble(calibration),
+        f'<div role="img" aria-label="{escape(_in_words(calibration), quote=True)}">{figure}</div>',
+        "<h2>Candidates, the best first</h2>",
+        _candidates(calibration),
+        f"<p>{escape(klipper_sentence(calibration))}</p>",
+        "<h2>Modes</h2>",
+        _modes(calibration),
+        "<h2>The shaper</h2>",
+        _impulses(calibration),
+        f"<footer>Measured: {escape(names)}. Made by preshape {escape(version)}; the same numbers are in shaper.json "
+        "beside this page. Remaining vibration, smoothing and max_accel are Klipper's measures (5000 mm/s² and 5 mm/s "
+        "through corners); smoothing and max_accel mean something for 3D printers only.</footer>",
+        "</body></html>",
+    ]
+    return "\n".join(part for part in parts if part) + "\n"
+
+
+def klipper_sentence(calibration: Calibration) -> str:
+    """What Klipper itself would choose, for comparison."""
+    fit = calibration.klipper
+    return (
+        f"For comparison, Klipper itself would choose {fit.name} at {fit.frequency:.1f} Hz: it leaves "
+        f"{100.0 * fit.score.remaining_vibration:.1f} % of the vibration, smoothing {fit.score.smoothing:.3f} mm, "
+        f"max_accel {fit.score.maximum_acceleration:.0f} mm/s²."
+    )
+
+
+def _in_words(calibration: Calibration) -> str:
+    modes = "; ".join(str(mode) for mode in calibration.modes) or "no clear mode"
+    return f"Measured spectrum with {modes}. {calibration.reason}"
+
+
+def _trouble(calibration: Calibration) -> str:
+    if not calibration.trouble:
+        return ""
+    rows = "".join(f"<p>{escape(sentence)}</p>" for sentence in calibration.trouble)
+    return f'<div class="trouble"><strong>Look at the machine first.</strong>{rows}</div>'
+
+
+def _candidates(calibration: Calibration) -> str:
+    head = (
+        "<tr><th>shaper</th><th>impulses</th><th>duration<br>[ms]</th><th>vibration left<br>[%]</th>"
+        "<th>smoothing<br>[mm]</th><th>max_accel<br>[mm/s²]</th><th></th></tr>"
+    )
+    rows = "".join(_candidate(calibration, candidate) for candidate in calibration.candidates)
+    return f'<div class="tables"><table><thead>{head}</thead><tbody>{rows}</tbody></table></div>'
+
+
+def _candidate(calibration: Calibration, candidate: Candidate) -> str:
+    chosen = candidate is calibration.chosen
+    note = "chosen" if chosen else candidate.excluded
+    kind = "chosen" if chosen else "excluded" if candidate.excluded else ""
+    score = candidate.score
+    return (
+        f'<tr class="{kind}"><td>{escape(candidate.name)}</td><td>{len(candidate.shaper)}</td>'
+        f"<td>{1e3 * candidate.shaper.duration:.1f}</td><td>{100.0 * score.remaining_vibration:.1f}</td>"
+        f"<td>{score.smoothing:.3f}</td><td>{score.maximum_acceleration:.0f}</td>"
+        f'<td class="note">{escape(note)}</td></tr>'
+    )
+
+
+def _modes(calibration: Calibration) -> str:
+    if not calibration.modes:
+        return "<p>No mode stands out of the measurement.</p>"
+    head = (
+        "<tr><th>natural frequency [Hz]</th><th>95 % interval</th><th>damping ratio</th><th>95 % interval</th>"
+        "<th>share of vibration</th></tr>"
+    )
+    rows = "".join(
+        f"<tr><td>{mode.mode.frequency:.2f}</td>"
+        f"<td>{mode.frequency_interval[0]:.2f} … {mode.frequency_interval[1]:.2f}</td>"
+        f"<td>{mode.mode.damping:.4f}</td>"
+        f"<td>{mode.damping_interval[0]:.4f} … {mode.damping_interval[1]:.4f}</td>"
+        f"<td>{100.0 * mode.share:.0f} %</td></tr>"
+        for mode in calibration.modes
+    )
+    return f'<div class="tables"><table><thead>{head}</thead><tbody>{rows}</tbody></table></div>'
+
+
+def _impulses(calibration: Calibration) -> str:
+    shaper = calibration.shaper
+    rows = "".join(
+        f"<tr><td>{i}</td><td>{1e3 * t:.4f}</td><td>{a:.6f}</td></tr>"
+        for i, (t, a) in enumerate(zip(shaper.times, shaper.amplitudes, strict=True), start=1)
+    )
+    head = "<tr><th>impulse</th><th>time [ms]</th><th>amplitude [-]</th></tr>"
+    proof = "<p>Proved shortest: the certificate is in shaper.json.</p>" if shaper.design.status == "optimal" else ""
+    return f'{proof}<div class="tables"><table><thead>{head}</thead><tbody>{rows}</tbody></table></div>'

@@ -1,0 +1,103 @@
+"""The main job: from vibration measurements to a shaper that can be trusted, with the reason."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from preshape import identify
+from preshape.errors import InputError
+from preshape.export import klipper
+from preshape.mode import Mode
+from preshape.report import Calibration, MeasuredFile
+from preshape.workflow.candidates import designed_candidates
+from preshape.workflow.choose import choose, ranked
+from preshape.workflow.merge_modes import merged_modes
+from preshape.workflow.simulate import simulate_move
+from preshape.workflow.spectra import scored_spectrum
+
+__all__ = ["calibrate"]
+
+
+def calibrate(
+    files: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
+    *,
+    maximum_impulses: int | None = None,
+    tolerance: float = 0.05,
+    damping: float | None = None,
+    sample_rate: float | None = None,
+) -> Calibration:
+    """Read measurements of one axis, find its modes, design the candidates, and choose.
+
+    Parameters
+    ----------
+    files : path or several
+        Measurements in any format that :func:`preshape.identify.read` knows; several count as one machine, of which
+        the worst case must be served.
+    maximum_impulses : int, optional
+        How many impulses the controller holds; no limit unless given.
+    tolerance : float
+        Part of the measured vibration that may remain [-], between 0 and 1.
+    damping : float, optional
+        Damping ratio [-] of the modes, when it is known better than the measurement shows it.
+    sample_rate : float, optional
+        Samples per second [Hz], for tables without a time column.
+
+    Returns
+    -------
+    Calibration
+        Everything that the report shows; the shaper is ``calibration.shaper``.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used (MeasurementError), a value is out of range, or no candidate fits the controller.
+
+    Examples
+    --------
+    >>> calibration = calibrate("examples/data/gantry_x.csv")
+    >>> [round(mode.mode.frequency) for mode in calibration.modes]
+    [47, 79]
+    """
+    paths = [files] if isinstance(files, str | os.PathLike) else list(files)
+    if not paths:
+        raise InputError("no measurement was given: name at least one file.")
+    if not 0.0 < tolerance < 1.0:
+        raise InputError(f"tolerance {tolerance:g} is outside (0, 1): give 0.05 for 5 % of the measured vibration.")
+    if maximum_impulses is not None and maximum_impulses < 2:
+        raise InputError(f"{maximum_impulses} impulses cannot shape anything: the shortest shaper has 2.")
+    if damping is not None:
+        Mode(1.0, damping)  # says what is wrong with it
+    measured = tuple(_measured(Path(path), damping, sample_rate) for path in paths)
+    modes = merged_modes([file.identification for file in measured])
+    spectra = [klipper.Spectrum(file.frequencies, file.power) for file in measured]
+    candidates = ranked(
+        designed_candidates(spectra, modes, damping=damping, maximum_impulses=maximum_impulses), tolerance
+    )
+    chosen, reason = choose(candidates, tolerance)
+    several = len(measured) > 1
+    trouble = tuple(
+        f"{file.name}: {sentence}" if several else sentence
+        for file in measured
+        for sentence in file.identification.trouble
+    )
+    return Calibration(
+        files=measured,
+        modes=modes,
+        candidates=candidates,
+        chosen=chosen,
+        reason=reason,
+        klipper=klipper.recommend(spectra).chosen,
+        trouble=trouble,
+        move=simulate_move(chosen.shaper, modes) if modes else None,
+        tolerance=tolerance,
+        maximum_impulses=maximum_impulses,
+    )
+
+
+def _measured(path: Path, damping: float | None, sample_rate: float | None) -> MeasuredFile:
+    measurement = identify.read(path, sample_rate=sample_rate)
+    identification = identify.find_modes(measurement, damping=damping)
+    frequencies, power = scored_spectrum(measurement, identification)
+    return MeasuredFile(path.name, identification, frequencies, power)
