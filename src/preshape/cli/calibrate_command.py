@@ -50,13 +50,15 @@ def command(
     from preshape.cli.screens import calibration_screen, console
     from preshape.workflow import calibrate, save_calibration
 
-    with console(stderr=True).status("reading, finding the modes, designing ..."):
+    progress = console(stderr=True)
+    with progress.status("reading, finding the modes, designing ..."):
         calibration = calibrate(
             files, maximum_impulses=maximum_impulses, tolerance=tolerance, damping=damping, sample_rate=sample_rate
         )
-        saved = save_calibration(calibration, out) if out is not None else None
     calibration_screen(calibration)
-    if saved is None:
+    if out is None:
         click.echo("Nothing was written; --out DIR writes shaper.json, the figure and the report.")
-    else:
-        click.echo(f"Report: {saved.report}\nFigure: {saved.figure}\nShaper: {saved.shaper}")
+        return
+    with progress.status("drawing the report ..."):
+        saved = save_calibration(calibration, out)
+    click.echo(f"Report: {saved.report}\nFigure: {saved.figure}\nShaper: {saved.shaper}")

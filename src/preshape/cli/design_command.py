@@ -53,9 +53,10 @@ def command(family: str, modes: tuple[Mode, ...], dt: float | None, json_file: s
     if json_file == "-":
         click.echo(to_json(shaper.to_dict()), nl=False)
         return
+    saved = None if json_file is None else shaper.save(Path(json_file))
     shaper_screen(shaper)
-    if json_file is not None:
-        click.echo(f"Shaper: {shaper.save(Path(json_file))}")
+    if saved is not None:
+        click.echo(f"Shaper: {saved}")
 
 
 def _designed(family: str, modes: tuple[Mode, ...], wishes: dict[str, Any]) -> Shaper:

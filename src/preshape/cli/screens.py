@@ -46,7 +46,14 @@ def calibration_screen(calibration: Calibration) -> None:
     )
     table.add_column("")
     table.add_column("shaper", no_wrap=True)
-    for title in ("impulses", "duration\n[ms]", "vibration\nleft [%]", "smoothing\n[mm]", "max_accel\n[mm/s²]"):
+    for title in (
+        "impulses",
+        "duration\n[ms]",
+        "vibration\nleft [%]",
+        "with 5 %\nerror [%]",
+        "smoothing\n[mm]",
+        "max_accel\n[mm/s²]",
+    ):
         table.add_column(title, justify="right")
     table.add_column("")
     for candidate in calibration.candidates:
@@ -57,6 +64,7 @@ def calibration_screen(calibration: Calibration) -> None:
             f"{len(candidate.shaper)}",
             f"{1e3 * candidate.shaper.duration:.1f}",
             f"{100.0 * candidate.score.remaining_vibration:.1f}",
+            f"{100.0 * candidate.worst:.1f}",
             f"{candidate.score.smoothing:.3f}",
             f"{candidate.score.maximum_acceleration:.0f}",
             candidate.excluded,

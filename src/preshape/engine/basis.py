@@ -21,7 +21,7 @@ MAXIMUM_REFINEMENTS = 60
 
 
 class Basis:
-    """Rows g(t) in R^m, m = 2 sum_j (q_j + 1), with integral of g g^T over [0, duration] equal to duration * identity.
+    """Rows g(t) in R^m, m = 2 sum_j (q_j + 1), orthonormal over even samples of [0, duration], each of mean square one.
 
     Parameters
     ----------

@@ -11,7 +11,11 @@ from preshape.export.klipper import KlipperFit, KlipperScore
 from preshape.identify import Identification, IdentifiedMode
 from preshape.shaper import Shaper
 
-__all__ = ["Calibration", "Candidate", "MeasuredFile", "SimulatedMove"]
+__all__ = ["FREQUENCY_ERROR", "Calibration", "Candidate", "MeasuredFile", "SimulatedMove"]
+
+FREQUENCY_ERROR = 0.05
+"""Relative error of the frequencies that a shaper must bear: modes move by some percent with position, load and
+temperature, so a shaper that is right for the measurement alone is not one to trust."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +52,8 @@ class Candidate:
         The impulses.
     score : KlipperScore
         Remaining vibration [-], smoothing [mm], maximum acceleration [mm/s^2] on the measured spectra.
+    worst : float
+        Remaining vibration [-] when all frequencies are off by :data:`FREQUENCY_ERROR`, in the worse direction.
     excluded : str
         Why it may not be chosen; empty when it may.
     """
@@ -55,6 +61,7 @@ class Candidate:
     name: str
     shaper: Shaper
     score: KlipperScore
+    worst: float
     excluded: str = ""
 
 
@@ -102,6 +109,8 @@ class Calibration:
         What Klipper itself would recommend on the same spectra, for comparison.
     trouble : tuple of str
         What is wrong with the machine or the measurement, as sentences; empty when healthy.
+    clear : bool
+        False when the measurement is no ground to tune a shaper on; the choice is then the least bad.
     move : SimulatedMove or None
         None when no mode was found.
     tolerance : float
@@ -117,6 +126,7 @@ class Calibration:
     reason: str
     klipper: KlipperFit
     trouble: tuple[str, ...]
+    clear: bool
     move: SimulatedMove | None
     tolerance: float
     maximum_impulses: int | None

@@ -44,9 +44,11 @@ def calibration_figure(calibration: Calibration) -> Figure:
     _move(figure.add_subplot(grid[1, 1]), calibration)
     shaper = calibration.shaper
     left = 100.0 * calibration.chosen.score.remaining_vibration
+    proof = "; proved shortest" if shaper.design.status == "optimal" else ""
+    warning = "" if calibration.clear else "See to the machine first. Until then: "
     figure.suptitle(
-        f"{calibration.chosen.name}: {len(shaper)} impulses, {1e3 * shaper.duration:.1f} ms, "
-        f"leaves {left:.1f} % of the measured vibration",
+        f"{warning}{calibration.chosen.name}: {len(shaper)} impulses, {1e3 * shaper.duration:.1f} ms, "
+        f"leaves {left:.1f} % of the measured vibration{proof}",
         fontsize=13,
         fontweight="bold",
         color=ACCENT if calibration.chosen.score.remaining_vibration <= calibration.tolerance else SECOND,
@@ -72,7 +74,7 @@ def _spectrum(axes: Axes, calibration: Calibration) -> None:
         axes.plot(f, v, color=SECOND, linestyle=style, linewidth=1.4, label=f"left by {candidate.name}")
     chosen = calibration.chosen
     v = residual_vibration(chosen.shaper, f, damping)
-    axes.plot(f, v, color=ACCENT, linewidth=2.4, label=f"left by {chosen.name}")
+    axes.plot(f, v, color=ACCENT, linewidth=2.4, label=f"left by {chosen.name} (at damping {damping:.3f})")
     axes.axhline(calibration.tolerance, color=INK, linewidth=0.9, linestyle=(0, (1, 2)))
     axes.annotate(
         f"{100.0 * calibration.tolerance:g} %",
@@ -104,6 +106,11 @@ def _spectrum(axes: Axes, calibration: Calibration) -> None:
         "What vibrates, and how much of it each shaper leaves",
     )
     axes.legend(fontsize=8.5, loc="upper right", frameon=True, framealpha=0.9, edgecolor="white")
+
+
+def _percent(fraction: float) -> str:
+    """A fraction for people: rounding errors are not shown as a result."""
+    return "less than 0.01 %" if fraction < 1e-4 else f"{100.0 * fraction:.2g} %"
 
 
 def _highest_shown(calibration: Calibration) -> float:
@@ -148,7 +155,7 @@ def _move(axes: Axes, calibration: Calibration) -> None:
     axes.set_ylim(-1.15 * peak, 1.45 * peak)
     axes.annotate(
         f"shaped move ends {1e3 * (move.end_shaped - move.end_unshaped):.1f} ms later,\n"
-        f"leaves {100.0 * move.left:.2g} % of the vibration",
+        f"leaves {_percent(move.left)} of the vibration",
         (1e3 * move.end_shaped, 1.4 * peak),
         xytext=(4, 0),
         textcoords="offset points",
@@ -157,7 +164,5 @@ def _move(axes: Axes, calibration: Calibration) -> None:
         color=ACCENT,
     )
     axes.set_xlim(0.0, times[-1])
-    tidy(
-        axes, "time [ms]", "vibration [% of what is left unshaped]", "A quick move of these modes (simulated)"
-    )
+    tidy(axes, "time [ms]", "vibration [% of what is left unshaped]", "A quick move of these modes (simulated)")
     axes.legend(fontsize=8.5, loc="lower right", frameon=True, framealpha=0.9, edgecolor="white")

@@ -39,10 +39,11 @@ def tidy(axes: Axes, x_label: str, y_label: str, title: str) -> None:
         axes.spines[side].set_visible(False)
 
 
-def as_png(figure: Figure, dots_per_inch: int = 150) -> bytes:
-    """The figure as PNG bytes."""
+def as_png(figure: Figure, dots_per_inch: int = 120) -> bytes:
+    """The figure as PNG bytes; its layout is settled by this, so that a second rendering need not find it again."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=dots_per_inch)
+    figure.set_layout_engine("none")
     return buffer.getvalue()
 
 

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from html import escape
+from typing import TYPE_CHECKING
 
 from preshape.report.calibration import Calibration, Candidate
 from preshape.report.calibration_figure import calibration_figure
 from preshape.report.figures import as_svg
 
-__all__ = ["calibration_page"]
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["calibration_page", "klipper_sentence"]
 
 STYLE = """
 :root { --ink: #1a1a1a; --soft: #5b5b5b; --line: #dcdcdc; --accent: #0b5fa5; --warn: #9a3b00; }
@@ -36,7 +40,7 @@ footer { color: var(--soft); font-size: .85rem; margin-top: 1.2rem; border-top: 
 """
 
 
-def calibration_page(calibration: Calibration, version: str) -> str:
+def calibration_page(calibration: Calibration, version: str, figure: Figure | None = None) -> str:
     """The report as HTML text.
 
     Parameters
@@ -45,19 +49,21 @@ def calibration_page(calibration: Calibration, version: str) -> str:
         From :func:`preshape.workflow.calibrate`.
     version : str
         Of preshape, for the foot of the page.
+    figure : matplotlib Figure, optional
+        From :func:`calibration_figure`, when it has been drawn already.
     """
     names = ", ".join(file.name for file in calibration.files)
-    figure = as_svg(calibration_figure(calibration))
+    drawn = as_svg(calibration_figure(calibration) if figure is None else figure)
     parts = [
         "<!doctype html>",
         '<html lang="en"><head><meta charset="utf-8">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
         f"<title>preshape: {escape(calibration.chosen.name)} for {escape(names)}</title>",
         f"<style>{STYLE}</style></head><body>",
-        f"<h1>Use {escape(calibration.chosen.name)}</h1>",
+        f"<h1>{escape(_headline(calibration))}</h1>",
         f'<p class="reason">{escape(calibration.reason)}</p>',
         _trouble(calibration),
-        f'<div role="img" aria-label="{escape(_in_words(calibration), quote=True)}">{figure}</div>',
+        f'<div role="img" aria-label="{escape(_in_words(calibration), quote=True)}">{drawn}</div>',
         "<h2>Candidates, the best first</h2>",
         _candidates(calibration),
         f"<p>{escape(klipper_sentence(calibration))}</p>",
@@ -66,8 +72,9 @@ def calibration_page(calibration: Calibration, version: str) -> str:
         "<h2>The shaper</h2>",
         _impulses(calibration),
         f"<footer>Measured: {escape(names)}. Made by preshape {escape(version)}; the same numbers are in shaper.json "
-        "beside this page. Remaining vibration, smoothing and max_accel are Klipper's measures (5000 mm/s² and 5 mm/s "
-        "through corners); smoothing and max_accel mean something for 3D printers only.</footer>",
+        "beside this page. Vibration left is Klipper's measure at this machine's damping ratios; 'with 5 % error' is its worst "
+        "value when all frequencies are 5 % off. Smoothing and max_accel are Klipper's (5000 mm/s², 5 mm/s through "
+        "corners) and mean something for 3D printers only.</footer>",
         "</body></html>",
     ]
     return "\n".join(part for part in parts if part) + "\n"
@@ -77,10 +84,14 @@ def klipper_sentence(calibration: Calibration) -> str:
     """What Klipper itself would choose, for comparison."""
     fit = calibration.klipper
     return (
-        f"For comparison, Klipper itself would choose {fit.name} at {fit.frequency:.1f} Hz: it leaves "
-        f"{100.0 * fit.score.remaining_vibration:.1f} % of the vibration, smoothing {fit.score.smoothing:.3f} mm, "
-        f"max_accel {fit.score.maximum_acceleration:.0f} mm/s²."
+        f"For comparison, Klipper itself would choose {fit.name} at {fit.frequency:.1f} Hz. By its own measure, which "
+        f"assumes damping 0.075 to 0.15, that leaves {100.0 * fit.score.remaining_vibration:.1f} % of the vibration; "
+        f"smoothing {fit.score.smoothing:.3f} mm, max_accel {fit.score.maximum_acceleration:.0f} mm/s²."
     )
+
+
+def _headline(calibration: Calibration) -> str:
+    return f"Use {calibration.chosen.name}" if calibration.clear else "See to the machine first"
 
 
 def _in_words(calibration: Calibration) -> str:
@@ -92,13 +103,13 @@ def _trouble(calibration: Calibration) -> str:
     if not calibration.trouble:
         return ""
     rows = "".join(f"<p>{escape(sentence)}</p>" for sentence in calibration.trouble)
-    return f'<div class="trouble"><strong>Look at the machine first.</strong>{rows}</div>'
+    return f'<div class="trouble"><strong>What the measurement says of the machine</strong>{rows}</div>'
 
 
 def _candidates(calibration: Calibration) -> str:
     head = (
-        "<tr><th>shaper</th><th>impulses</th><th>duration<br>[ms]</th><th>vibration left<br>[%]</th>"
-        "<th>smoothing<br>[mm]</th><th>max_accel<br>[mm/s²]</th><th></th></tr>"
+        "<tr><th>shaper</th><th>impulses</th><th>duration<br>[ms]</th><th>vibration<br>left [%]</th>"
+        "<th>with 5 %<br>error [%]</th><th>smoothing<br>[mm]</th><th>max_accel<br>[mm/s²]</th><th></th></tr>"
     )
     rows = "".join(_candidate(calibration, candidate) for candidate in calibration.candidates)
     return f'<div class="tables"><table><thead>{head}</thead><tbody>{rows}</tbody></table></div>'
@@ -112,6 +123,7 @@ def _candidate(calibration: Calibration, candidate: Candidate) -> str:
     return (
         f'<tr class="{kind}"><td>{escape(candidate.name)}</td><td>{len(candidate.shaper)}</td>'
         f"<td>{1e3 * candidate.shaper.duration:.1f}</td><td>{100.0 * score.remaining_vibration:.1f}</td>"
+        f"<td>{100.0 * candidate.worst:.1f}</td>"
         f"<td>{score.smoothing:.3f}</td><td>{score.maximum_acceleration:.0f}</td>"
         f'<td class="note">{escape(note)}</td></tr>'
     )

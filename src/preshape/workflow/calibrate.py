@@ -72,10 +72,12 @@ def calibrate(
     measured = tuple(_measured(Path(path), damping, sample_rate) for path in paths)
     modes = merged_modes([file.identification for file in measured])
     spectra = [klipper.Spectrum(file.frequencies, file.power) for file in measured]
+    stock = klipper.recommend(spectra).chosen
     candidates = ranked(
-        designed_candidates(spectra, modes, damping=damping, maximum_impulses=maximum_impulses), tolerance
+        designed_candidates(spectra, modes, stock, damping=damping, maximum_impulses=maximum_impulses), tolerance
     )
-    chosen, reason = choose(candidates, tolerance)
+    clear = all(file.identification.clear for file in measured)
+    chosen, reason = choose(candidates, tolerance, clear)
     several = len(measured) > 1
     trouble = tuple(
         f"{file.name}: {sentence}" if several else sentence
@@ -88,8 +90,9 @@ def calibrate(
         candidates=candidates,
         chosen=chosen,
         reason=reason,
-        klipper=klipper.recommend(spectra).chosen,
+        klipper=stock,
         trouble=trouble,
+        clear=clear,
         move=simulate_move(chosen.shaper, modes) if modes else None,
         tolerance=tolerance,
         maximum_impulses=maximum_impulses,

@@ -11,10 +11,10 @@ from preshape.errors import InputError
 from preshape.export import klipper
 from preshape.identify import IdentifiedMode
 from preshape.mode import Mode, Modes
-from preshape.report import Candidate
+from preshape.report import FREQUENCY_ERROR, Candidate
 from preshape.shaper import Shaper
 
-__all__ = ["designed_candidates"]
+__all__ = ["designed_candidates", "machine_dampings"]
 
 TUNED: dict[str, Callable[[Mode], Shaper]] = {
     "zv": design.zv,
@@ -31,8 +31,8 @@ SEVERAL: dict[str, Callable[[Modes], Shaper]] = {
     "convolved zv": lambda modes: design.convolved(modes, "zv"),
     "convolved mzv": lambda modes: design.convolved(modes, "mzv"),
     "convolved zvd": lambda modes: design.convolved(modes, "zvd"),
-    "direct, order 0": lambda modes: design.direct(modes, 0),
-    "direct, order 1": lambda modes: design.direct(modes, 1),
+    "direct zv": lambda modes: design.direct(modes, 0),
+    "direct zvd": lambda modes: design.direct(modes, 1),
 }
 """All identified modes at once."""
 
@@ -42,39 +42,71 @@ DEFAULT_DAMPING = 0.1
 SEARCH_FACTORS = (0.6, 2.5)
 """Families are tuned from this multiple of the lowest peak to this multiple of the highest."""
 
-SEARCH_RATIO = 1.003
-"""Ratio of neighbouring frequencies in the search: a third of a percent is finer than any machine holds."""
+SEARCH_RATIO = 1.005
+"""Ratio of neighbouring frequencies in the search: half a percent is finer than any machine holds."""
 
 LOUD = 0.2
 """Bins above this fraction of the highest one bound the search."""
 
 
+def machine_dampings(modes: Sequence[IdentifiedMode], damping: float | None) -> tuple[float, ...]:
+    """The damping ratios at which shapers are tested; the worst counts.
+
+    Klipper tests 0.075, 0.1 and 0.15, since it does not know the machine's. Where the modes were identified, their own
+    damping ratios and the ends of the first one's confidence interval are tested instead.
+    """
+    if damping is not None:
+        return (damping,)
+    if not modes:
+        return klipper.TESTED_DAMPINGS
+    return tuple(sorted({*modes[0].damping_interval, *(mode.mode.damping for mode in modes)}))
+
+
 def designed_candidates(
     spectra: Sequence[klipper.Spectrum],
     modes: Sequence[IdentifiedMode],
+    stock: klipper.KlipperFit,
     *,
     damping: float | None = None,
     maximum_impulses: int | None = None,
 ) -> Iterator[Candidate]:
-    """All candidates with their scores, in no order.
+    """All candidates with their scores, in no order; `stock` is what Klipper itself would choose.
 
     A family that does not exist at this damping (EI has a limit) is left out; one with more impulses than the
     controller holds is kept and marked, so that the user sees what the limit costs.
     """
-    if damping is None:
-        damping = modes[0].mode.damping if modes else DEFAULT_DAMPING
+    dampings = machine_dampings(modes, damping)
+    ratio = damping if damping is not None else modes[0].mode.damping if modes else DEFAULT_DAMPING
     grid = _search_grid(spectra)
+
+    def candidate(name: str, shaper: Shaper) -> Candidate:
+        return Candidate(
+            name=name,
+            shaper=shaper,
+            score=klipper.score(shaper, spectra, dampings),
+            worst=klipper.remaining_vibration(shaper, spectra, dampings, frequency_error=FREQUENCY_ERROR),
+            excluded=_exclusion(shaper, maximum_impulses),
+        )
+
     for name, family in TUNED.items():
         try:
-            fitted = klipper.tune(name, _of_frequency(family), spectra, grid, damping=damping)
+            fitted = klipper.tune(
+                name,
+                _of_frequency(family),
+                spectra,
+                grid,
+                damping=ratio,
+                dampings=dampings,
+                frequency_error=FREQUENCY_ERROR,
+            )
         except InputError:
             continue
-        yield _limited(Candidate(f"{name} at {fitted.frequency:.4g} Hz", fitted.shaper, fitted.score), maximum_impulses)
+        yield candidate(f"{name} at {fitted.frequency:.4g} Hz", fitted.shaper)
+    yield candidate(f"Klipper's {stock.name} at {stock.frequency:.1f} Hz", stock.shaper)
     if len(modes) > 1:
         wanted = Modes([mode.mode for mode in modes])
         for name, family_of_several in SEVERAL.items():
-            shaper = family_of_several(wanted)
-            yield _limited(Candidate(name, shaper, klipper.score(shaper, spectra)), maximum_impulses)
+            yield candidate(name, family_of_several(wanted))
 
 
 def _of_frequency(family: Callable[[Mode], Shaper]) -> Callable[[float, float], Shaper]:
@@ -90,8 +122,7 @@ def _search_grid(spectra: Sequence[klipper.Spectrum]) -> np.ndarray:
     return np.geomspace(low, high, int(np.ceil(np.log(high / low) / np.log(SEARCH_RATIO))) + 2)
 
 
-def _limited(candidate: Candidate, maximum_impulses: int | None) -> Candidate:
-    """The candidate, marked when the controller cannot hold it."""
-    if maximum_impulses is not None and len(candidate.shaper) > maximum_impulses:
-        return Candidate(candidate.name, candidate.shaper, candidate.score, f"more than {maximum_impulses} impulses")
-    return candidate
+def _exclusion(shaper: Shaper, maximum_impulses: int | None) -> str:
+    """Why the controller cannot hold this shaper; empty when it can."""
+    too_many = maximum_impulses is not None and len(shaper) > maximum_impulses
+    return f"more than {maximum_impulses} impulses" if too_many else ""

@@ -46,8 +46,9 @@ def save_calibration(calibration: Calibration, folder: str | os.PathLike[str]) -
         raise InputError(
             f"cannot make the folder {target}: {error.strerror or error}; choose another with --out."
         ) from error
-    page = calibration_page(calibration, version("preshape"))
-    figure = as_png(calibration_figure(calibration))
+    drawn = calibration_figure(calibration)
+    figure = as_png(drawn)
+    page = calibration_page(calibration, version("preshape"), drawn)
     return SavedCalibration(
         shaper=calibration.shaper.save(target / "shaper.json"),
         figure=write_atomically(target / "calibration.png", figure),

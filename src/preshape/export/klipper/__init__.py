@@ -3,7 +3,9 @@
 from preshape.export.klipper.families import FAMILIES, KlipperFamily, ei, mzv, three_hump_ei, two_hump_ei, zv, zvd
 from preshape.export.klipper.recommend import KlipperRecommendation, fit, recommend
 from preshape.export.klipper.scoring import (
+    TESTED_DAMPINGS,
     KlipperScore,
+    combined,
     maximum_acceleration,
     remaining_vibration,
     score,
@@ -18,6 +20,7 @@ from preshape.export.klipper.spectrum import (
 from preshape.export.klipper.tuning import KlipperFit, tune
 
 __all__ = [
+    "TESTED_DAMPINGS",
     "FAMILIES",
     "AccelerationSpectrum",
     "KlipperFamily",
@@ -25,6 +28,7 @@ __all__ = [
     "KlipperRecommendation",
     "KlipperScore",
     "Spectrum",
+    "combined",
     "ei",
     "fit",
     "maximum_acceleration",

@@ -17,7 +17,7 @@ from preshape.export.klipper.scoring import (
     KlipperScore,
     combined,
     maximum_acceleration,
-    remaining_fraction,
+    worst_fraction,
 )
 from preshape.export.klipper.spectra import MAXIMUM_FREQUENCY, SpectraLike, Spectrum, as_spectra
 from preshape.shaper import Shaper
@@ -60,8 +60,9 @@ def tune(
     dampings: Iterable[float] = TESTED_DAMPINGS,
     square_corner_velocity: float = SQUARE_CORNER_VELOCITY,
     maximum_frequency: float = MAXIMUM_FREQUENCY,
+    frequency_error: float = 0.0,
 ) -> KlipperFit:
-    """Tune any single-mode family to the spectra by the rule of :func:`fit`, over frequencies of your own.
+    """Tune any single-mode family to the spectra by Klipper's rule, over frequencies of your own.
 
     Parameters
     ----------
@@ -72,7 +73,9 @@ def tune(
     frequencies : array_like, shape (candidate,)
         Frequencies to try [Hz], rising.
     spectra, damping, dampings, square_corner_velocity, maximum_frequency
-        As for :func:`fit`.
+        As for :func:`preshape.export.klipper.fit`.
+    frequency_error : float
+        As for :func:`preshape.export.klipper.remaining_vibration`; the result's score includes it.
 
     Examples
     --------
@@ -111,15 +114,13 @@ class Scan:
         dampings: tuple[float, ...],
         square_corner_velocity: float,
         maximum_frequency: float,
+        frequency_error: float = 0.0,
     ) -> Scan:
         """The scan, over all candidates and bins at once."""
         slowest = pulses(1.0, damping)
-        parts = [
-            remaining_fraction(slowest, spectrum.up_to(maximum_frequency), frequencies, dampings)
-            for spectrum in spectra
-        ]
+        heard = [spectrum.up_to(maximum_frequency) for spectrum in spectra]
+        vibration = worst_fraction(slowest, heard, frequencies, dampings, frequency_error)
         smoothing = CornerMoments.of(slowest).smoothing(frequencies, ACCELERATION, square_corner_velocity)
-        vibration = np.max(parts, axis=0)
         return cls(name, pulses, damping, square_corner_velocity, frequencies, vibration, smoothing)
 
     def tuned(self) -> int:

@@ -1,0 +1,30 @@
+"""Best of several runs, and one row of output."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+__all__ = ["best_of", "row"]
+
+
+def best_of(function: Callable[[], object], runs: int = 7, at_least: float = 0.05) -> float:
+    """Seconds a call: the best of `runs` batches that each take `at_least` seconds."""
+    function()
+    start = time.perf_counter()
+    function()
+    count = max(1, int(at_least / max(time.perf_counter() - start, 1e-9)))
+    best = float("inf")
+    for _ in range(runs):
+        start = time.perf_counter()
+        for _ in range(count):
+            function()
+        best = min(best, (time.perf_counter() - start) / count)
+    return best
+
+
+def row(what: str, ours: float, peer: str, theirs: float, claim: str) -> None:
+    """Print one comparison; times in milliseconds."""
+    print(
+        f"{what}: {1e3 * ours:.3f} ms; {peer}: {1e3 * theirs:.3f} ms; ratio {theirs / ours:.1f} ({claim})", flush=True
+    )

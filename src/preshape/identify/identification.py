@@ -1,0 +1,73 @@
+"""What was found in a measurement: modes with their uncertainty, and what is wrong with it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from preshape.identify.measurement import Spectrum
+from preshape.mode import Mode
+
+__all__ = ["IdentifiedMode", "Identification", "RING_DOWN", "SPECTRUM_FIT"]
+
+RING_DOWN = "ring-down"
+SPECTRUM_FIT = "spectrum fit"
+
+
+@dataclass(frozen=True, slots=True)
+class IdentifiedMode:
+    """One mode and how well it is known.
+
+    Attributes
+    ----------
+    mode : Mode
+        Undamped natural frequency [Hz] and damping ratio.
+    frequency_interval : tuple of float
+        95 % confidence interval of the natural frequency [Hz].
+    damping_interval : tuple of float
+        95 % confidence interval of the damping ratio.
+    share : float
+        Part of the vibration energy that is this mode's, 0 to 1.
+    """
+
+    mode: Mode
+    frequency_interval: tuple[float, float]
+    damping_interval: tuple[float, float]
+    share: float
+
+    def __str__(self) -> str:
+        low, high = self.damping_interval
+        return (
+            f"{self.mode.frequency:.2f} Hz ({self.frequency_interval[0]:.2f} to {self.frequency_interval[1]:.2f}), "
+            f"damping {self.mode.damping:.4f} ({low:.4f} to {high:.4f}), {100.0 * self.share:.0f} % of the vibration"
+        )
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Identification:
+    """The modes behind a measurement.
+
+    Attributes
+    ----------
+    modes : tuple of IdentifiedMode
+        The most important first; empty when nothing resonates.
+    spectrum : Spectrum
+        One channel `sum`: what was fitted, as a power spectral density summed over the channels.
+    fitted : ndarray, shape (frequency,)
+        The model's curve at `spectrum.frequencies`; NaN outside the band that was fitted.
+    method : str
+        'ring-down' or 'spectrum fit'.
+    trouble : tuple of str
+        Sentences on what is wrong with the measurement or the machine; empty when healthy.
+    clear : bool
+        False when the modes should not be trusted.
+    """
+
+    modes: tuple[IdentifiedMode, ...]
+    spectrum: Spectrum
+    fitted: NDArray[np.float64]
+    method: str
+    trouble: tuple[str, ...]
+    clear: bool

@@ -1,0 +1,87 @@
+"""Every code block of README and docs runs, and every docstring example; what is public is documented."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import inspect
+import pkgutil
+import re
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from click.testing import CliRunner
+
+import preshape
+from preshape.cli.main import preshape as command_line
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+MODULES = sorted(
+    m.name for m in pkgutil.walk_packages(preshape.__path__, "preshape.") if not m.name.endswith("__main__")
+)
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+
+
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if blocks(page, "python")], ids=lambda page: str(page.relative_to(ROOT))
+)
+def test_python_blocks_run_one_after_the_other(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    names: dict[str, object] = {}
+    for block in blocks(page, "python"):
+        exec(compile(block, str(page), "exec"), names)
+
+
+def console_lines() -> list[str]:
+    lines = [line for page in PAGES for block in blocks(page, "console") for line in block.splitlines()]
+    return sorted({line.removeprefix("$ ") for line in lines if line.startswith("$ preshape ")})
+
+
+@pytest.mark.parametrize("line", console_lines())
+def test_console_lines_are_accepted(line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """File names in the docs stand for the user's; here they are files of that kind."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "resonances_x.csv").write_bytes((ROOT / "examples" / "data" / "gantry_x.csv").read_bytes())
+    result = CliRunner().invoke(command_line, shlex.split(line)[1:], catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_docstring_examples(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    failures, _ = doctest.testmod(importlib.import_module(name), optionflags=doctest.NORMALIZE_WHITESPACE)
+    assert failures == 0
+
+
+def public_functions() -> Iterator[tuple[str, object]]:
+    for name in MODULES:
+        module: ModuleType = importlib.import_module(name)
+        for public in getattr(module, "__all__", []):
+            thing = getattr(module, public)
+            if getattr(thing, "__module__", None) == name and (inspect.isfunction(thing) or inspect.isclass(thing)):
+                yield f"{name}.{public}", thing
+
+
+@pytest.mark.parametrize(("name", "thing"), [pytest.param(*pair, id=pair[0]) for pair in public_functions()])
+def test_everything_public_is_documented(name: str, thing: object) -> None:
+    text = inspect.getdoc(thing)
+    assert text, f"{name} has no docstring"
+    assert len(text.splitlines()[0]) <= 120
+    if inspect.isfunction(thing) and "Parameters\n---" in text:
+        section = text.split("Parameters\n---")[1].split("\n\nReturns")[0].split("\n\nRaises")[0]
+        missing = [p for p in inspect.signature(thing).parameters if not re.search(rf"\b{p}\b", section)]
+        assert not missing, f"{name} does not document {missing}"
+
+
+def test_the_readme_names_the_two_commands_that_ci_runs() -> None:
+    readme, ci = (ROOT / "README.md").read_text(), (ROOT / ".ci" / "run").read_text()
+    for command in ("make demo", "make test"):
+        assert command in readme
+        assert command in ci
