@@ -52,13 +52,19 @@ $(VENV)/bin/python:
 	@echo "== setting up $(VENV) with $$($(PYTHON) --version)"
 	$(PYTHON) -m venv $(VENV)
 
-$(CORE): $(VENV)/bin/python requirements/core.txt pyproject.toml
+$(VENV)/requirements.stamp: $(VENV)/bin/python requirements/core.txt
 	@echo "== installing what preshape needs (locked in requirements/core.txt; about a minute the first time)"
 	$(PIP) install --require-hashes -r requirements/core.txt
+	@touch $@
+
+$(CORE): $(VENV)/requirements.stamp pyproject.toml
 	$(PIP) install --quiet --no-deps --no-build-isolation --no-index --editable .
 	@touch $@
 
-$(DEV): $(CORE) requirements/dev.txt
+$(VENV)/dev-requirements.stamp: $(VENV)/requirements.stamp requirements/dev.txt
 	@echo "== installing what tests, lint and documentation need (locked in requirements/dev.txt)"
 	$(PIP) install --require-hashes -r requirements/dev.txt
+	@touch $@
+
+$(DEV): $(VENV)/dev-requirements.stamp $(CORE)
 	@touch $@

@@ -44,7 +44,8 @@ class Certificate:
     coefficients : tuple of complex
         c_jk, mode by mode, within a mode k = 0 ... order.
     minimum : float
-        Smallest value of p on [0, T] relative to the largest |p| [-], all local minima located on the continuum.
+        Smallest value of p on [0, T] relative to the largest magnitude of p [-], all local minima located on
+        the continuum.
     contacts : tuple of float
         Times [s] at which p touches zero.
     exclusion : float

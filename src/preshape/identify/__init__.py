@@ -3,7 +3,7 @@
 from preshape.identify.decay_modes import ring_down
 from preshape.identify.find import find_modes
 from preshape.identify.identification import Identification, IdentifiedMode
-from preshape.identify.measurement import Measurement, Spectrum, TimeSeries
+from preshape.identify.measurement import Measurement, PrintedSpectrum, Spectrum, TimeSeries
 from preshape.identify.readers import read
 from preshape.identify.text import MAXIMUM_FILE_SIZE
 from preshape.identify.welch import spectrum
@@ -13,6 +13,7 @@ __all__ = [
     "Identification",
     "IdentifiedMode",
     "Measurement",
+    "PrintedSpectrum",
     "Spectrum",
     "TimeSeries",
     "find_modes",

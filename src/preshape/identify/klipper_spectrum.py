@@ -13,13 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from preshape.errors import MeasurementError
-from preshape.identify.measurement import Spectrum
+from preshape.identify.measurement import PrintedSpectrum, Spectrum
 from preshape.identify.text import cells, check_fixed_decimals, check_increasing, parse_table
 
 __all__ = ["FORMAT", "read", "recognises"]
 
 FORMAT = "Klipper spectrum"
 AXES = ("psd_x", "psd_y", "psd_z")
+TOTAL = "psd_xyz"
 ROUNDING = 0.05
 """Frequencies are rounded to 0.1 Hz in the file, so each is wrong by at most this much [Hz]."""
 
@@ -60,9 +61,11 @@ def read(lines: list[str], source: str, sample_rate: float | None) -> Spectrum:
             )
         picked = [lowered.index(name) for name in AXES]
         channels = tuple(name.removeprefix("psd_") for name in AXES)
+        scored = [lowered.index(TOTAL)] if TOTAL in lowered else []
     else:
         picked = list(range(len(data)))
         channels = tuple(data)
+        scored = picked
     if not channels:
         raise MeasurementError(f"{source}: the header names no density column after 'freq'; export the spectrum again.")
     table = parse_table(lines[1:], 2, len(header), source, used=1 + len(data))
@@ -92,6 +95,7 @@ def read(lines: list[str], source: str, sample_rate: float | None) -> Spectrum:
         excitation_exponent=1.0 if normalised else 2.0,
         source=source,
         format=FORMAT,
+        printed=PrintedSpectrum(table[:, 0], table[:, [1 + column for column in scored]].T) if scored else None,
     )
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from preshape.errors import InputError
 
-__all__ = ["Measurement", "Spectrum", "TimeSeries"]
+__all__ = ["Measurement", "PrintedSpectrum", "Spectrum", "TimeSeries"]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -77,6 +77,22 @@ class TimeSeries:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class PrintedSpectrum:
+    """The very numbers of a spectrum file, on which Klipper's scores are computed.
+
+    Parameters
+    ----------
+    frequencies : ndarray, shape (frequency,)
+        As printed, so rounded [Hz].
+    power : ndarray, shape (dataset, frequency)
+        As printed: the sum over the axes (`psd_xyz`), or one row a dataset.
+    """
+
+    frequencies: NDArray[np.float64]
+    power: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class Spectrum:
     """Power spectral density of vibration, one-sided.
 
@@ -101,6 +117,8 @@ class Spectrum:
         The file they come from and its format.
     remarks : tuple of str
         What the reader noticed and the user should know, as sentences.
+    printed : PrintedSpectrum or None
+        What the file says, where that was rounded or is summed otherwise.
 
     Raises
     ------
@@ -118,6 +136,7 @@ class Spectrum:
     source: str = ""
     format: str = "array"
     remarks: tuple[str, ...] = ()
+    printed: PrintedSpectrum | None = None
 
     def __post_init__(self) -> None:
         density = _checked(self.density, self.channels, "density", "frequency")

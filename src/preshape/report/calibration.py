@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from preshape.export.klipper import KlipperFit, KlipperScore
-from preshape.identify import Identification, IdentifiedMode
+from preshape.identify import Identification, IdentifiedMode, PrintedSpectrum
 from preshape.shaper import Shaper
 
 __all__ = ["FREQUENCY_ERROR", "Calibration", "Candidate", "MeasuredFile", "SimulatedMove"]
@@ -28,16 +28,13 @@ class MeasuredFile:
         The file's name without its folder.
     identification : Identification
         Modes, fitted curve, troubles.
-    frequencies : ndarray, shape (frequency,)
-        [Hz], of the spectrum on which shapers are scored.
-    power : ndarray, shape (frequency,)
-        Power on that grid, summed over the axes; a sweep's divided by frequency as Klipper does.
+    scored : PrintedSpectrum
+        On which shapers are scored; a sweep's divided by frequency as Klipper does.
     """
 
     name: str
     identification: Identification
-    frequencies: NDArray[np.float64]
-    power: NDArray[np.float64]
+    scored: PrintedSpectrum
 
 
 @dataclass(frozen=True)

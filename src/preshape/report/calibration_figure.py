@@ -61,9 +61,10 @@ def calibration_figure(calibration: Calibration) -> Figure:
 def _spectrum(axes: Axes, calibration: Calibration) -> None:
     """Measured power, what the shaper leaves of it, the modes, and V of the shaper."""
     high = _highest_shown(calibration)
-    for number, file in enumerate(calibration.files):
-        shown = file.frequencies <= high
-        f, power = file.frequencies[shown], file.power[shown] / file.power.max()
+    spectra = [(file.scored.frequencies, row) for file in calibration.files for row in file.scored.power]
+    for number, (frequencies, row) in enumerate(spectra):
+        shown = frequencies <= high
+        f, power = frequencies[shown], row[shown] / row.max()
         axes.fill_between(f, power, color=SOFT, linewidth=0, label="measured spectrum" if number == 0 else None)
         axes.plot(f, power, color=MUTED, linewidth=1.0)
     f = np.linspace(0.0, high, 1200)
@@ -115,7 +116,7 @@ def _percent(fraction: float) -> str:
 
 def _highest_shown(calibration: Calibration) -> float:
     """Where the frequency axis ends [Hz]."""
-    measured = max(float(file.frequencies[-1]) for file in calibration.files)
+    measured = max(float(file.scored.frequencies[-1]) for file in calibration.files)
     if not calibration.modes:
         return measured
     return min(measured, SHOWN_ABOVE * max(mode.mode.frequency for mode in calibration.modes))

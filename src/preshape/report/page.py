@@ -72,9 +72,9 @@ def calibration_page(calibration: Calibration, version: str, figure: Figure | No
         "<h2>The shaper</h2>",
         _impulses(calibration),
         f"<footer>Measured: {escape(names)}. Made by preshape {escape(version)}; the same numbers are in shaper.json "
-        "beside this page. Vibration left is Klipper's measure at this machine's damping ratios; 'with 5 % error' is its worst "
-        "value when all frequencies are 5 % off. Smoothing and max_accel are Klipper's (5000 mm/s², 5 mm/s through "
-        "corners) and mean something for 3D printers only.</footer>",
+        "beside this page. Vibration left is Klipper's measure at this machine's damping ratios; 'with 5 % error' is "
+        "its worst value when all frequencies are 5 % off. Smoothing and max_accel are Klipper's (5000 mm/s², 5 mm/s "
+        "through corners) and mean something for 3D printers only.</footer>",
         "</body></html>",
     ]
     return "\n".join(part for part in parts if part) + "\n"

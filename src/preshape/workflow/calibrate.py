@@ -71,7 +71,7 @@ def calibrate(
         Mode(1.0, damping)  # says what is wrong with it
     measured = tuple(_measured(Path(path), damping, sample_rate) for path in paths)
     modes = merged_modes([file.identification for file in measured])
-    spectra = [klipper.Spectrum(file.frequencies, file.power) for file in measured]
+    spectra = klipper.as_spectra([(file.scored.frequencies, file.scored.power) for file in measured])
     stock = klipper.recommend(spectra).chosen
     candidates = ranked(
         designed_candidates(spectra, modes, stock, damping=damping, maximum_impulses=maximum_impulses), tolerance
@@ -102,5 +102,4 @@ def calibrate(
 def _measured(path: Path, damping: float | None, sample_rate: float | None) -> MeasuredFile:
     measurement = identify.read(path, sample_rate=sample_rate)
     identification = identify.find_modes(measurement, damping=damping)
-    frequencies, power = scored_spectrum(measurement, identification)
-    return MeasuredFile(path.name, identification, frequencies, power)
+    return MeasuredFile(path.name, identification, scored_spectrum(measurement, identification))

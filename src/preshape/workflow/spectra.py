@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from preshape.export import klipper
-from preshape.identify import Identification, Measurement, Spectrum
+from preshape.identify import Identification, Measurement, PrintedSpectrum, Spectrum
 
 __all__ = ["scored_spectrum"]
 
 
-def scored_spectrum(
-    measurement: Measurement, identification: Identification
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Frequencies [Hz] and power, both shape (frequency,), summed over the axes.
+def scored_spectrum(measurement: Measurement, identification: Identification) -> PrintedSpectrum:
+    """Frequencies [Hz] and power, summed over the axes, one row a dataset.
 
-    A sweep's spectrum is divided by frequency as Klipper does (its acceleration grows with frequency), so that
-    Klipper's numbers come out; what rang down by itself or by a move is taken as it is.
+    A spectrum file counts as it is printed, as Klipper takes it. A sweep's spectrum is divided by frequency as Klipper
+    does (its acceleration grows with frequency); what rang down by itself or by a move is taken as it is.
     """
     if isinstance(measurement, Spectrum):
-        if measurement.normalised:
-            return measurement.frequencies, measurement.total
-        return measurement.frequencies, klipper.normalise_to_frequencies(measurement.frequencies, measurement.total)
+        spectrum = measurement.printed or PrintedSpectrum(measurement.frequencies, measurement.total[None, :])
+        return spectrum if measurement.normalised else _normalised(spectrum)
     if measurement.format.startswith("Klipper"):
-        spectrum = klipper.power_spectral_density(measurement.times, measurement.values)
-        return spectrum.frequencies, klipper.normalise_to_frequencies(spectrum.frequencies, spectrum.total)
-    return identification.spectrum.frequencies, identification.spectrum.total
+        recorded = klipper.power_spectral_density(measurement.times, measurement.values)
+        return _normalised(PrintedSpectrum(recorded.frequencies, recorded.total[None, :]))
+    return PrintedSpectrum(identification.spectrum.frequencies, identification.spectrum.total[None, :])
+
+
+def _normalised(spectrum: PrintedSpectrum) -> PrintedSpectrum:
+    return PrintedSpectrum(spectrum.frequencies, klipper.normalise_to_frequencies(spectrum.frequencies, spectrum.power))

@@ -11,7 +11,7 @@ from preshape.export.klipper.scoring import (
     score,
     smoothing,
 )
-from preshape.export.klipper.spectra import Spectrum
+from preshape.export.klipper.spectra import Spectrum, as_spectra
 from preshape.export.klipper.spectrum import (
     AccelerationSpectrum,
     normalise_to_frequencies,
@@ -28,6 +28,7 @@ __all__ = [
     "KlipperRecommendation",
     "KlipperScore",
     "Spectrum",
+    "as_spectra",
     "combined",
     "ei",
     "fit",

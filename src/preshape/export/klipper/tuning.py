@@ -83,8 +83,8 @@ def tune(
     >>> frequencies = np.arange(0.05, 2.0, 0.01)
     >>> psd = 1.0 / ((1.0 - (frequencies / 0.55) ** 2) ** 2 + (0.2 * frequencies / 0.55) ** 2)
     >>> zvd = tune("zvd", lambda f, z: design.zvd((f, z)), (frequencies, psd), np.linspace(0.3, 0.9, 601))
-    >>> 0.5 < zvd.frequency < 0.6
-    True
+    >>> round(zvd.frequency, 2), zvd.score.remaining_vibration < 0.01
+    (0.63, True)
     """
     ratios, grid = tuple(dampings), np.asarray(frequencies, dtype=float)
     scan = Scan.of(name, pulses, grid, as_spectra(spectra), damping, ratios, square_corner_velocity, maximum_frequency)

@@ -1,0 +1,189 @@
+"""The main job on the gantry whose modes we know, on real files, and on Klipper's own numbers."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from preshape import Shaper, identify
+from preshape.errors import InputError
+from preshape.export import klipper
+from preshape.plant import ModalPlant
+from preshape.report import Calibration
+from preshape.vibration import residual_vibration
+from preshape.workflow import calibrate, save_calibration
+from preshape.workflow.spectra import scored_spectrum
+
+ROOT = Path(__file__).resolve().parents[2]
+GANTRY = ROOT / "examples" / "data" / "gantry_x.csv"
+TRUE_MODES = ((47.3, 0.045), (78.6, 0.060))
+"""What the generator in examples/ simulates."""
+
+DATA = ROOT.parent / "shared" / "data"
+REAL_FILES = sorted(DATA.glob("*.csv"))
+REFERENCE = DATA / "klipper_reference_results.json"
+
+
+@pytest.fixture(scope="module")
+def gantry() -> Calibration:
+    return calibrate(GANTRY)
+
+
+def test_the_gantry_s_modes_are_found(gantry: Calibration) -> None:
+    assert len(gantry.modes) == 2
+    for found, (frequency, damping) in zip(gantry.modes, TRUE_MODES, strict=True):
+        assert found.mode.frequency == pytest.approx(frequency, rel=2e-3)
+        assert found.mode.damping == pytest.approx(damping, rel=0.1)
+        assert found.frequency_interval[0] <= frequency <= found.frequency_interval[1]
+    assert gantry.clear and gantry.trouble == ()
+
+
+def test_the_chosen_shaper_stills_the_true_machine(gantry: Calibration) -> None:
+    """On the modes of the simulation, which the calibration has never seen."""
+    plant = ModalPlant(list(TRUE_MODES))
+    left = plant.impulse_residual(gantry.shaper.times, gantry.shaper.amplitudes)
+    assert left.max() < 0.05
+    assert gantry.move is not None and gantry.move.left < 1e-9  # on the modes it was designed for
+
+
+def test_the_choice_is_the_best_of_the_candidates_by_the_rule_it_states(gantry: Calibration) -> None:
+    assert gantry.chosen is gantry.candidates[0]
+    assert gantry.chosen.worst <= gantry.tolerance
+    value = klipper.combined(gantry.chosen.worst, gantry.chosen.score.smoothing)
+    for other in gantry.candidates[1:]:
+        if other.worst <= gantry.tolerance:
+            assert klipper.combined(other.worst, other.score.smoothing) >= value
+    assert gantry.chosen.name in gantry.reason
+    names = " ".join(candidate.name for candidate in gantry.candidates)
+    for family in (
+        "zv at",
+        "mzv at",
+        "zvd at",
+        "ei at",
+        "two_hump_ei",
+        "three_hump_ei",
+        "convolved",
+        "direct",
+        "Klipper's",
+    ):
+        assert family in names
+
+
+def test_a_direct_candidate_is_proved(gantry: Calibration) -> None:
+    direct = [candidate.shaper for candidate in gantry.candidates if candidate.name.startswith("direct")]
+    assert len(direct) == 2
+    assert all(shaper.design.status == "optimal" for shaper in direct)
+    for shaper in direct:
+        for mode in gantry.modes:
+            assert residual_vibration(shaper, mode.mode.frequency, mode.mode.damping) < 1e-12
+
+
+def test_limits_and_wishes_are_kept() -> None:
+    two = calibrate(GANTRY, maximum_impulses=2)
+    assert len(two.shaper) == 2
+    assert any(candidate.excluded == "more than 2 impulses" for candidate in two.candidates)
+    assert not two.chosen.excluded
+    fixed = calibrate(GANTRY, damping=0.08)
+    assert all(mode.mode.damping == 0.08 for mode in fixed.modes)
+    strict = calibrate(GANTRY, tolerance=0.0001)
+    assert strict.chosen.worst <= min(c.worst for c in strict.candidates) + 1e-12 or strict.chosen.worst <= 0.0001
+
+
+def test_several_files_count_as_one_machine() -> None:
+    twice = calibrate([GANTRY, GANTRY])
+    once = calibrate(GANTRY)
+    assert [mode.mode for mode in twice.modes] == [mode.mode for mode in once.modes]
+    assert twice.chosen.name == once.chosen.name
+
+
+@pytest.mark.parametrize(
+    ("wish", "sentence"),
+    [
+        ({"tolerance": 0.0}, r"outside \(0, 1\)"),
+        ({"tolerance": 1.0}, r"outside \(0, 1\)"),
+        ({"maximum_impulses": 1}, "cannot shape"),
+        ({"damping": 1.0}, r"outside \[0, 1\)"),
+        ({"damping": -0.1}, r"outside \[0, 1\)"),
+    ],
+)
+def test_impossible_wishes_are_refused(wish: dict[str, float], sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        calibrate(GANTRY, **wish)
+    with pytest.raises(InputError, match="no measurement"):
+        calibrate([])
+
+
+def test_what_is_saved_is_complete_and_readable(gantry: Calibration, tmp_path: Path) -> None:
+    saved = save_calibration(gantry, tmp_path / "new" / "folder")
+    assert Shaper.load(saved.shaper) == gantry.shaper
+    assert saved.figure.read_bytes().startswith(b"\x89PNG")
+    page = saved.report.read_text()
+    assert gantry.reason in page and "<svg" in page and page.rstrip().endswith("</html>")
+    for outside in ("http://", "https://", "src=", "@import"):
+        assert outside not in page.replace("http://www.w3.org", "").replace("http://purl.org", "").replace(
+            "http://creativecommons.org", "").replace("https://matplotlib.org", "")  # fmt: skip
+    assert sorted(os.listdir(tmp_path / "new" / "folder")) == ["calibration.png", "report.html", "shaper.json"]
+
+
+def test_a_folder_that_cannot_be_written_is_refused(gantry: Calibration, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(InputError, match="cannot make the folder"):
+        save_calibration(gantry, tmp_path / "file")
+
+
+def test_an_interrupted_run_leaves_the_old_results(
+    gantry: Calibration, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    save_calibration(gantry, tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def interrupted(descriptor: int) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(os, "fsync", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        save_calibration(gantry, tmp_path)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.skipif(not REAL_FILES, reason="the measurements of ../shared/data are not on this machine")
+@pytest.mark.parametrize("path", REAL_FILES, ids=lambda path: path.stem)
+def test_every_real_file_is_calibrated(path: Path, tmp_path: Path) -> None:
+    calibration = calibrate(path)
+    saved = save_calibration(calibration, tmp_path)
+    assert Shaper.load(saved.shaper) == calibration.shaper
+    assert calibration.clear or calibration.trouble
+    if path.stem.startswith("sammcj"):  # up to ten peaks: nothing to tune a shaper on
+        assert not calibration.clear
+        assert "see to the machine" in calibration.reason
+
+
+@pytest.mark.skipif(not REFERENCE.exists(), reason="Klipper's reference results are not on this machine")
+def test_klipper_s_own_numbers_are_met_on_every_printed_digit_through_our_readers() -> None:
+    for name, expected in json.loads(REFERENCE.read_text()).items():
+        measurement = identify.read(DATA / name)
+        scored = scored_spectrum(measurement, identify.find_modes(measurement))
+        answer = klipper.recommend((scored.frequencies, scored.power))
+        assert (answer.chosen.name, answer.chosen.frequency) == (expected["recommended"], expected["freq"])
+        for fit, row in zip(answer.fits, expected["fits"], strict=True):
+            printed = {
+                "name": fit.name,
+                "freq": fit.frequency,
+                "vibr_pct": round(100.0 * fit.score.remaining_vibration, 2),
+                "smoothing": round(fit.score.smoothing, 4),
+                "max_accel": round(fit.score.maximum_acceleration),
+                "score": float(f"{fit.score.value:.6g}"),
+            }
+            assert printed == row
+
+
+def test_shares_and_intervals_are_sensible(gantry: Calibration) -> None:
+    assert sum(mode.share for mode in gantry.modes) <= 1.0 + 1e-9
+    for mode in gantry.modes:
+        low, high = mode.damping_interval
+        assert 0.0 <= low <= mode.mode.damping <= high < 1.0
+    assert np.isfinite([candidate.score.value for candidate in gantry.candidates]).all()
