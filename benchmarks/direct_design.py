@@ -32,7 +32,7 @@ def main() -> None:
             method="highs-ipm",
             options={"time_limit": 20.0},
         )
-        return float(answer.fun)
+        return float(np.asarray(answer.fun))
 
     def peer() -> float:
         low, high = 0.0, convolved

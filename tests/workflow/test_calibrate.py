@@ -50,13 +50,11 @@ def test_the_chosen_shaper_stills_the_true_machine(gantry: Calibration) -> None:
     assert gantry.move is not None and gantry.move.left < 1e-9  # on the modes it was designed for
 
 
-def test_the_choice_is_the_best_of_the_candidates_by_the_rule_it_states(gantry: Calibration) -> None:
+def test_the_choice_smooths_least_of_those_within_the_tolerance(gantry: Calibration) -> None:
     assert gantry.chosen is gantry.candidates[0]
-    assert gantry.chosen.worst <= gantry.tolerance
-    value = klipper.combined(gantry.chosen.worst, gantry.chosen.score.smoothing)
+    assert gantry.chosen.left <= gantry.tolerance
     for other in gantry.candidates[1:]:
-        if other.worst <= gantry.tolerance:
-            assert klipper.combined(other.worst, other.score.smoothing) >= value
+        assert other.left > gantry.tolerance or other.score.smoothing >= gantry.chosen.score.smoothing
     assert gantry.chosen.name in gantry.reason
     names = " ".join(candidate.name for candidate in gantry.candidates)
     for family in (
@@ -71,6 +69,27 @@ def test_the_choice_is_the_best_of_the_candidates_by_the_rule_it_states(gantry: 
         "Klipper's",
     ):
         assert family in names
+
+
+def test_what_is_left_is_what_the_plant_keeps_in_the_worst_case(gantry: Calibration) -> None:
+    """The number in the table, by exact simulation of the identified modes, 5 % off either way."""
+    modes = [(mode.mode.frequency, mode.mode.damping) for mode in gantry.modes]
+    shares = np.array([mode.share for mode in gantry.modes])
+    for candidate in gantry.candidates:
+        rms = []
+        for shift in (0.95, 0.975, 1.0, 1.025, 1.05):
+            plant = ModalPlant([(frequency * shift, damping) for frequency, damping in modes])
+            v = plant.impulse_residual(candidate.shaper.times, candidate.shaper.amplitudes)
+            rms.append(float(np.sqrt(v**2 @ shares / shares.sum())))
+        assert candidate.left == pytest.approx(max(rms), abs=2e-3)  # dampings vary within their intervals too
+        assert candidate.left >= max(rms) - 1e-12
+
+
+def test_klipper_s_measures_of_the_candidates_are_klipper_s(gantry: Calibration) -> None:
+    file = gantry.files[0]
+    for candidate in gantry.candidates:
+        again = klipper.score(candidate.shaper, (file.scored.frequencies, file.scored.power))
+        assert again == candidate.score
 
 
 def test_a_direct_candidate_is_proved(gantry: Calibration) -> None:
@@ -90,7 +109,8 @@ def test_limits_and_wishes_are_kept() -> None:
     fixed = calibrate(GANTRY, damping=0.08)
     assert all(mode.mode.damping == 0.08 for mode in fixed.modes)
     strict = calibrate(GANTRY, tolerance=0.0001)
-    assert strict.chosen.worst <= min(c.worst for c in strict.candidates) + 1e-12 or strict.chosen.worst <= 0.0001
+    assert strict.chosen.left == min(candidate.left for candidate in strict.candidates) > 0.0001
+    assert "more than the 0.01 % allowed" in strict.reason
 
 
 def test_several_files_count_as_one_machine() -> None:

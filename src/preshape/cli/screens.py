@@ -49,8 +49,8 @@ def calibration_screen(calibration: Calibration) -> None:
     for title in (
         "impulses",
         "duration\n[ms]",
-        "vibration\nleft [%]",
-        "with 5 %\nerror [%]",
+        "vibration left at\n5 % error [%]",
+        "by Klipper's\nmeasure [%]",
         "smoothing\n[mm]",
         "max_accel\n[mm/s²]",
     ):
@@ -63,8 +63,8 @@ def calibration_screen(calibration: Calibration) -> None:
             candidate.name,
             f"{len(candidate.shaper)}",
             f"{1e3 * candidate.shaper.duration:.1f}",
+            f"{100.0 * candidate.left:.1f}",
             f"{100.0 * candidate.score.remaining_vibration:.1f}",
-            f"{100.0 * candidate.worst:.1f}",
             f"{candidate.score.smoothing:.3f}",
             f"{candidate.score.maximum_acceleration:.0f}",
             candidate.excluded,

@@ -47,18 +47,20 @@ class Candidate:
         Family and, for a tuned family, its frequency: "mzv at 57.0 Hz".
     shaper : Shaper
         The impulses.
+    left : float
+        Amplitude that remains [-] of what rings on after a move (the modes, by their shares; on a measurement that is
+        not clear everything loud in it), when all frequencies are off by up to :data:`FREQUENCY_ERROR`, in the worst
+        case.
     score : KlipperScore
-        Remaining vibration [-], smoothing [mm], maximum acceleration [mm/s^2] on the measured spectra.
-    worst : float
-        Remaining vibration [-] when all frequencies are off by :data:`FREQUENCY_ERROR`, in the worse direction.
+        By Klipper's own measures: remaining vibration [-], smoothing [mm], maximum acceleration [mm/s^2].
     excluded : str
         Why it may not be chosen; empty when it may.
     """
 
     name: str
     shaper: Shaper
+    left: float
     score: KlipperScore
-    worst: float
     excluded: str = ""
 
 

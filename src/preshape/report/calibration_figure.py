@@ -43,15 +43,14 @@ def calibration_figure(calibration: Calibration) -> Figure:
     _impulses(figure.add_subplot(grid[1, 0]), calibration)
     _move(figure.add_subplot(grid[1, 1]), calibration)
     shaper = calibration.shaper
-    left = 100.0 * calibration.chosen.score.remaining_vibration
     proof = "; proved shortest" if shaper.design.status == "optimal" else ""
     warning = "" if calibration.clear else "See to the machine first. Until then: "
     figure.suptitle(
         f"{warning}{calibration.chosen.name}: {len(shaper)} impulses, {1e3 * shaper.duration:.1f} ms, "
-        f"leaves {left:.1f} % of the measured vibration{proof}",
+        f"at most {100.0 * calibration.chosen.left:.1f} % vibration left{proof}",
         fontsize=13,
         fontweight="bold",
-        color=ACCENT if calibration.chosen.score.remaining_vibration <= calibration.tolerance else SECOND,
+        color=ACCENT if calibration.chosen.left <= calibration.tolerance else SECOND,
         x=0.01,
         ha="left",
     )

@@ -38,7 +38,7 @@ def calibrate(
     maximum_impulses : int, optional
         How many impulses the controller holds; no limit unless given.
     tolerance : float
-        Part of the measured vibration that may remain [-], between 0 and 1.
+        Part of the measured vibration that may remain [-], between 0 and 1, with all frequencies 5 % off.
     damping : float, optional
         Damping ratio [-] of the modes, when it is known better than the measurement shows it.
     sample_rate : float, optional
@@ -73,10 +73,20 @@ def calibrate(
     modes = merged_modes([file.identification for file in measured])
     spectra = klipper.as_spectra([(file.scored.frequencies, file.scored.power) for file in measured])
     stock = klipper.recommend(spectra).chosen
-    candidates = ranked(
-        designed_candidates(spectra, modes, stock, damping=damping, maximum_impulses=maximum_impulses), tolerance
-    )
     clear = all(file.identification.clear for file in measured)
+    candidates = ranked(
+        designed_candidates(
+            spectra,
+            modes,
+            stock,
+            tolerance=tolerance,
+            clear=clear,
+            damping=damping,
+            maximum_impulses=maximum_impulses,
+        ),
+        tolerance,
+        clear,
+    )
     chosen, reason = choose(candidates, tolerance, clear)
     several = len(measured) > 1
     trouble = tuple(

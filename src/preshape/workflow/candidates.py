@@ -5,16 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from preshape import design
 from preshape.errors import InputError
 from preshape.export import klipper
 from preshape.identify import IdentifiedMode
 from preshape.mode import Mode, Modes
-from preshape.report import FREQUENCY_ERROR, Candidate
+from preshape.report import Candidate
 from preshape.shaper import Shaper
+from preshape.workflow.remaining import (
+    Lines,
+    lines_of_modes,
+    lines_of_spectra,
+    remaining_amplitude,
+    remaining_amplitudes,
+)
 
-__all__ = ["designed_candidates", "machine_dampings"]
+__all__ = ["designed_candidates"]
 
 TUNED: dict[str, Callable[[Mode], Shaper]] = {
     "zv": design.zv,
@@ -40,26 +48,13 @@ DEFAULT_DAMPING = 0.1
 """What is assumed [-] when no mode was found and none is given; Klipper assumes the same."""
 
 SEARCH_FACTORS = (0.6, 2.5)
-"""Families are tuned from this multiple of the lowest peak to this multiple of the highest."""
+"""Families are tuned from this multiple of the lowest loud frequency to this multiple of the highest."""
 
-SEARCH_RATIO = 1.005
-"""Ratio of neighbouring frequencies in the search: half a percent is finer than any machine holds."""
+SEARCH_RATIO = 1.003
+"""Ratio of neighbouring frequencies in the search: a third of a percent is finer than any machine holds."""
 
 LOUD = 0.2
 """Bins above this fraction of the highest one bound the search."""
-
-
-def machine_dampings(modes: Sequence[IdentifiedMode], damping: float | None) -> tuple[float, ...]:
-    """The damping ratios at which shapers are tested; the worst counts.
-
-    Klipper tests 0.075, 0.1 and 0.15, since it does not know the machine's. Where the modes were identified, their own
-    damping ratios and the ends of the first one's confidence interval are tested instead.
-    """
-    if damping is not None:
-        return (damping,)
-    if not modes:
-        return klipper.TESTED_DAMPINGS
-    return tuple(sorted({*modes[0].damping_interval, *(mode.mode.damping for mode in modes)}))
 
 
 def designed_candidates(
@@ -67,6 +62,8 @@ def designed_candidates(
     modes: Sequence[IdentifiedMode],
     stock: klipper.KlipperFit,
     *,
+    tolerance: float,
+    clear: bool,
     damping: float | None = None,
     maximum_impulses: int | None = None,
 ) -> Iterator[Candidate]:
@@ -75,33 +72,27 @@ def designed_candidates(
     A family that does not exist at this damping (EI has a limit) is left out; one with more impulses than the
     controller holds is kept and marked, so that the user sees what the limit costs.
     """
-    dampings = machine_dampings(modes, damping)
+    lines = _lines(spectra, modes, clear, damping)
     ratio = damping if damping is not None else modes[0].mode.damping if modes else DEFAULT_DAMPING
-    grid = _search_grid(spectra)
 
     def candidate(name: str, shaper: Shaper) -> Candidate:
+        too_many = maximum_impulses is not None and len(shaper) > maximum_impulses
         return Candidate(
             name=name,
             shaper=shaper,
-            score=klipper.score(shaper, spectra, dampings),
-            worst=klipper.remaining_vibration(shaper, spectra, dampings, frequency_error=FREQUENCY_ERROR),
-            excluded=_exclusion(shaper, maximum_impulses),
+            left=remaining_amplitude(shaper, lines),
+            score=klipper.score(shaper, spectra),
+            excluded=f"more than {maximum_impulses} impulses" if too_many else "",
         )
 
+    grid = _search_grid(spectra)
     for name, family in TUNED.items():
         try:
-            fitted = klipper.tune(
-                name,
-                _of_frequency(family),
-                spectra,
-                grid,
-                damping=ratio,
-                dampings=dampings,
-                frequency_error=FREQUENCY_ERROR,
-            )
+            unit = family(Mode(1.0, ratio))
         except InputError:
             continue
-        yield candidate(f"{name} at {fitted.frequency:.4g} Hz", fitted.shaper)
+        frequency = _tuned(remaining_amplitudes(unit, lines, grid), grid, tolerance)
+        yield candidate(f"{name} at {frequency:.4g} Hz", family(Mode(frequency, ratio)))
     yield candidate(f"Klipper's {stock.name} at {stock.frequency:.1f} Hz", stock.shaper)
     if len(modes) > 1:
         wanted = Modes([mode.mode for mode in modes])
@@ -109,12 +100,16 @@ def designed_candidates(
             yield candidate(name, family_of_several(wanted))
 
 
-def _of_frequency(family: Callable[[Mode], Shaper]) -> Callable[[float, float], Shaper]:
-    """The family as a function of frequency [Hz] and damping ratio."""
-    return lambda frequency, damping: family(Mode(frequency, damping))
+def _lines(
+    spectra: Sequence[klipper.Spectrum], modes: Sequence[IdentifiedMode], clear: bool, damping: float | None
+) -> list[Lines]:
+    """What a shaper has to still: the modes where they can be trusted, or else everything that was measured."""
+    if clear and modes:
+        return lines_of_modes(modes)
+    return lines_of_spectra(spectra, klipper.TESTED_DAMPINGS if damping is None else (damping,))
 
 
-def _search_grid(spectra: Sequence[klipper.Spectrum]) -> np.ndarray:
+def _search_grid(spectra: Sequence[klipper.Spectrum]) -> NDArray[np.float64]:
     """Frequencies to try [Hz], evenly spaced in ratio, around everything loud."""
     loud = np.concatenate([s.frequencies[s.psd >= LOUD * s.psd.max()] for s in spectra])
     loud = loud[loud > 0.0]
@@ -122,7 +117,7 @@ def _search_grid(spectra: Sequence[klipper.Spectrum]) -> np.ndarray:
     return np.geomspace(low, high, int(np.ceil(np.log(high / low) / np.log(SEARCH_RATIO))) + 2)
 
 
-def _exclusion(shaper: Shaper, maximum_impulses: int | None) -> str:
-    """Why the controller cannot hold this shaper; empty when it can."""
-    too_many = maximum_impulses is not None and len(shaper) > maximum_impulses
-    return f"more than {maximum_impulses} impulses" if too_many else ""
+def _tuned(left: NDArray[np.float64], grid: NDArray[np.float64], tolerance: float) -> float:
+    """The highest frequency (the shortest shaper) within the tolerance, or else the one that leaves least [Hz]."""
+    enough = np.flatnonzero(left <= tolerance)
+    return float(grid[enough[-1] if enough.size else np.argmin(left)])

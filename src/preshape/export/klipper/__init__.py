@@ -17,7 +17,7 @@ from preshape.export.klipper.spectrum import (
     normalise_to_frequencies,
     power_spectral_density,
 )
-from preshape.export.klipper.tuning import KlipperFit, tune
+from preshape.export.klipper.tuning import KlipperFit
 
 __all__ = [
     "TESTED_DAMPINGS",
@@ -41,7 +41,6 @@ __all__ = [
     "score",
     "smoothing",
     "three_hump_ei",
-    "tune",
     "two_hump_ei",
     "zv",
     "zvd",

@@ -12,7 +12,7 @@ from preshape.errors import InputError
 from preshape.export.klipper.families import DEFAULT_DAMPING, FAMILIES, KlipperFamily
 from preshape.export.klipper.scoring import SQUARE_CORNER_VELOCITY, TESTED_DAMPINGS, KlipperScore
 from preshape.export.klipper.spectra import MAXIMUM_FREQUENCY, SpectraLike, as_spectra
-from preshape.export.klipper.tuning import KlipperFit, Scan, tune
+from preshape.export.klipper.tuning import KlipperFit, Scan
 
 __all__ = ["KlipperRecommendation", "fit", "recommend"]
 
@@ -99,16 +99,17 @@ def fit(
     54.2
     """
     family = _family(name)
-    return tune(
+    scan = Scan.of(
         name,
         family.pulses,
-        spectra,
         _klipper_grid(family),
-        damping=damping,
-        dampings=dampings,
-        square_corner_velocity=square_corner_velocity,
-        maximum_frequency=maximum_frequency,
+        as_spectra(spectra),
+        damping,
+        tuple(dampings),
+        square_corner_velocity,
+        maximum_frequency,
     )
+    return scan.fit(scan.tuned())
 
 
 def recommend(

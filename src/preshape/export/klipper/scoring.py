@@ -25,10 +25,10 @@ __all__ = [
     "KlipperScore",
     "combined",
     "maximum_acceleration",
+    "remaining_fraction",
     "remaining_vibration",
     "score",
     "smoothing",
-    "worst_fraction",
 ]
 
 TESTED_DAMPINGS = (0.075, 0.1, 0.15)
@@ -74,7 +74,6 @@ def remaining_vibration(
     spectra: SpectraLike,
     dampings: Iterable[float] = TESTED_DAMPINGS,
     *,
-    frequency_error: float = 0.0,
     maximum_frequency: float = MAXIMUM_FREQUENCY,
 ) -> float:
     """Fraction of the measured vibration that the shaper leaves, by Klipper's measure.
@@ -91,9 +90,6 @@ def remaining_vibration(
         (frequencies [Hz], psd) with psd of shape (frequency,) or (dataset, frequency), or a list of such pairs.
     dampings : iterable of float
         Damping ratios to try [-].
-    frequency_error : float
-        Relative error of all frequencies that must be reckoned with [-]: the worst of the spectrum as it is and moved
-        by this much either way counts. Klipper has none.
     maximum_frequency : float
         Vibration above it is not looked at [Hz].
 
@@ -118,8 +114,10 @@ def remaining_vibration(
     0.0
     """
     ratios = tuple(dampings)
-    datasets = [spectrum.up_to(maximum_frequency) for spectrum in as_spectra(spectra)]
-    return float(worst_fraction(shaper, datasets, np.ones(1), ratios, frequency_error)[0])
+    return max(
+        float(remaining_fraction(shaper, spectrum.up_to(maximum_frequency), np.ones(1), ratios)[0])
+        for spectrum in as_spectra(spectra)
+    )
 
 
 def smoothing(
@@ -236,22 +234,6 @@ def combined(vibration: Number, deviation: Number) -> Number:
     """Klipper's one number of remaining vibration [-] and smoothing [mm], both of any shape; less is better."""
     value: Number = deviation * (vibration**1.5 + 0.2 * vibration + 0.01)
     return value
-
-
-def worst_fraction(
-    shaper: Shaper,
-    spectra: Sequence[Spectrum],
-    frequencies: NDArray[np.float64],
-    dampings: Sequence[float],
-    frequency_error: float,
-) -> NDArray[np.float64]:
-    """:func:`remaining_fraction`, the largest over the spectra and over the frequency error [-] either way."""
-    if not 0.0 <= frequency_error < 1.0:
-        raise InputError(f"frequency error {frequency_error:g} is outside [0, 1): give 0.05 for 5 %.")
-    factors = (1.0 - frequency_error, 1.0, 1.0 + frequency_error) if frequency_error else (1.0,)
-    parts = [remaining_fraction(shaper, one, factor * frequencies, dampings) for one in spectra for factor in factors]
-    worst: NDArray[np.float64] = np.max(parts, axis=0)
-    return worst
 
 
 def remaining_fraction(

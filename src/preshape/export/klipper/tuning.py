@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from preshape.export.klipper.families import DEFAULT_DAMPING
 from preshape.export.klipper.scoring import (
     ACCELERATION,
-    SQUARE_CORNER_VELOCITY,
-    TESTED_DAMPINGS,
     CornerMoments,
     KlipperScore,
     combined,
     maximum_acceleration,
-    worst_fraction,
+    remaining_fraction,
 )
-from preshape.export.klipper.spectra import MAXIMUM_FREQUENCY, SpectraLike, Spectrum, as_spectra
+from preshape.export.klipper.spectra import Spectrum
 from preshape.shaper import Shaper
 
-__all__ = ["KlipperFit", "Scan", "tune"]
+__all__ = ["KlipperFit", "Scan"]
 
 VIBRATION_SLACK = (1.1, 0.0005)
 """A fit may leave up to this factor times the least vibration plus this [-] if that gives a better score."""
@@ -50,47 +47,6 @@ class KlipperFit:
     score: KlipperScore
 
 
-def tune(
-    name: str,
-    pulses: Callable[[float, float], Shaper],
-    spectra: SpectraLike,
-    frequencies: ArrayLike,
-    *,
-    damping: float = DEFAULT_DAMPING,
-    dampings: Iterable[float] = TESTED_DAMPINGS,
-    square_corner_velocity: float = SQUARE_CORNER_VELOCITY,
-    maximum_frequency: float = MAXIMUM_FREQUENCY,
-    frequency_error: float = 0.0,
-) -> KlipperFit:
-    """Tune any single-mode family to the spectra by Klipper's rule, over frequencies of your own.
-
-    Parameters
-    ----------
-    name : str
-        For the result.
-    pulses : callable
-        (frequency [Hz], damping [-]) -> Shaper, whose times scale with 1 / frequency.
-    frequencies : array_like, shape (candidate,)
-        Frequencies to try [Hz], rising.
-    spectra, damping, dampings, square_corner_velocity, maximum_frequency
-        As for :func:`preshape.export.klipper.fit`.
-    frequency_error : float
-        As for :func:`preshape.export.klipper.remaining_vibration`; the result's score includes it.
-
-    Examples
-    --------
-    >>> from preshape import design
-    >>> frequencies = np.arange(0.05, 2.0, 0.01)
-    >>> psd = 1.0 / ((1.0 - (frequencies / 0.55) ** 2) ** 2 + (0.2 * frequencies / 0.55) ** 2)
-    >>> zvd = tune("zvd", lambda f, z: design.zvd((f, z)), (frequencies, psd), np.linspace(0.3, 0.9, 601))
-    >>> round(zvd.frequency, 2), zvd.score.remaining_vibration < 0.01
-    (0.63, True)
-    """
-    ratios, grid = tuple(dampings), np.asarray(frequencies, dtype=float)
-    scan = Scan.of(name, pulses, grid, as_spectra(spectra), damping, ratios, square_corner_velocity, maximum_frequency)
-    return scan.fit(scan.tuned())
-
-
 @dataclass(frozen=True, eq=False)
 class Scan:
     """One family at all its frequencies, shape (candidate,), rising."""
@@ -114,14 +70,15 @@ class Scan:
         dampings: tuple[float, ...],
         square_corner_velocity: float,
         maximum_frequency: float,
-        frequency_error: float = 0.0,
     ) -> Scan:
         """The scan, over all candidates and bins at once."""
         slowest = pulses(1.0, damping)
-        heard = [spectrum.up_to(maximum_frequency) for spectrum in spectra]
-        vibration = worst_fraction(slowest, heard, frequencies, dampings, frequency_error)
+        parts = [
+            remaining_fraction(slowest, spectrum.up_to(maximum_frequency), frequencies, dampings)
+            for spectrum in spectra
+        ]
         smoothing = CornerMoments.of(slowest).smoothing(frequencies, ACCELERATION, square_corner_velocity)
-        return cls(name, pulses, damping, square_corner_velocity, frequencies, vibration, smoothing)
+        return cls(name, pulses, damping, square_corner_velocity, frequencies, np.max(parts, axis=0), smoothing)
 
     def tuned(self) -> int:
         """The candidate with the best score of those that leave nearly the least vibration."""
