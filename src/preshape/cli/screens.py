@@ -32,8 +32,8 @@ def calibration_screen(calibration: Calibration) -> None:
         modes.add_column(title, justify="right")
     for mode in calibration.modes:
         modes.add_row(
-            f"{mode.mode.frequency:.2f} Hz",
-            f"{mode.frequency_interval[0]:.2f} - {mode.frequency_interval[1]:.2f}",
+            f"{mode.mode.frequency:.4g} Hz",
+            f"{mode.frequency_interval[0]:.4g} - {mode.frequency_interval[1]:.4g}",
             f"{mode.mode.damping:.4f}",
             f"{mode.damping_interval[0]:.4f} - {mode.damping_interval[1]:.4f}",
             f"{100.0 * mode.share:.0f} %",
@@ -46,34 +46,34 @@ def calibration_screen(calibration: Calibration) -> None:
     )
     table.add_column("")
     table.add_column("shaper", no_wrap=True)
-    for title in (
-        "impulses",
-        "duration\n[ms]",
-        "vibration left at\n5 % error [%]",
-        "by Klipper's\nmeasure [%]",
-        "smoothing\n[mm]",
-        "max_accel\n[mm/s²]",
-    ):
+    for title in ("impulses", "duration\n[ms]", "vibration left at\n5 % error [%]"):
         table.add_column(title, justify="right")
+    if calibration.klipper is not None:
+        for title in ("by Klipper's\nmeasure [%]", "smoothing\n[mm]", "max_accel\n[mm/s²]"):
+            table.add_column(title, justify="right")
     table.add_column("")
     for candidate in calibration.candidates:
         chosen = candidate is calibration.chosen
-        table.add_row(
-            ">" if chosen else "",
+        score = candidate.score
+        cells = [
             candidate.name,
             f"{len(candidate.shaper)}",
             f"{1e3 * candidate.shaper.duration:.1f}",
             f"{100.0 * candidate.left:.1f}",
-            f"{100.0 * candidate.score.remaining_vibration:.1f}",
-            f"{candidate.score.smoothing:.3f}",
-            f"{candidate.score.maximum_acceleration:.0f}",
-            candidate.excluded,
-            style="bold cyan" if chosen else "dim" if candidate.excluded else None,
-        )
+        ]
+        if calibration.klipper is not None:
+            cells += [
+                f"{100.0 * score.remaining_vibration:.1f}",
+                f"{score.smoothing:.3f}",
+                f"{score.maximum_acceleration:.0f}",
+            ]
+        style = "bold cyan" if chosen else "dim" if candidate.excluded else None
+        table.add_row(">" if chosen else "", *cells, candidate.excluded, style=style)
     screen.print(table)
     screen.print()
     screen.print(Text(calibration.reason, style="bold"))
-    screen.print(Text(klipper_sentence(calibration)))
+    if calibration.klipper is not None:
+        screen.print(Text(klipper_sentence(calibration)))
 
 
 def shaper_screen(shaper: Shaper) -> None:

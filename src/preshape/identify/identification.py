@@ -40,7 +40,7 @@ class IdentifiedMode:
     def __str__(self) -> str:
         low, high = self.damping_interval
         return (
-            f"{self.mode.frequency:.2f} Hz ({self.frequency_interval[0]:.2f} to {self.frequency_interval[1]:.2f}), "
+            f"{self.mode.frequency:.4g} Hz ({self.frequency_interval[0]:.4g} to {self.frequency_interval[1]:.4g}), "
             f"damping {self.mode.damping:.4f} ({low:.4f} to {high:.4f}), {100.0 * self.share:.0f} % of the vibration"
         )
 

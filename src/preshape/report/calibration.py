@@ -104,8 +104,9 @@ class Calibration:
         One of them.
     reason : str
         One sentence why.
-    klipper : KlipperFit
-        What Klipper itself would recommend on the same spectra, for comparison.
+    klipper : KlipperFit or None
+        What Klipper itself would recommend on the same spectra, for comparison; None for a machine that vibrates where
+        Klipper does not look, for which its measures mean nothing either.
     trouble : tuple of str
         What is wrong with the machine or the measurement, as sentences; empty when healthy.
     clear : bool
@@ -123,7 +124,7 @@ class Calibration:
     candidates: tuple[Candidate, ...]
     chosen: Candidate
     reason: str
-    klipper: KlipperFit
+    klipper: KlipperFit | None
     trouble: tuple[str, ...]
     clear: bool
     move: SimulatedMove | None

@@ -66,28 +66,37 @@ def calibration_page(calibration: Calibration, version: str, figure: Figure | No
         f'<div role="img" aria-label="{escape(_in_words(calibration), quote=True)}">{drawn}</div>',
         "<h2>Candidates, the best first</h2>",
         _candidates(calibration),
-        f"<p>{escape(klipper_sentence(calibration))}</p>",
+        f"<p>{escape(klipper_sentence(calibration))}</p>" if calibration.klipper else "",
         "<h2>Modes</h2>",
         _modes(calibration),
         "<h2>The shaper</h2>",
         _impulses(calibration),
         f"<footer>Measured: {escape(names)}. Made by preshape {escape(version)}; the same numbers are in shaper.json "
         "beside this page. Vibration left: the root mean square amplitude that remains of the modes after a "
-        "move, in the worst case of all frequencies up to 5 % off. Klipper's measures: "
-        "damping 0.075 to 0.15, 5000 mm/s², 5 mm/s through corners; smoothing and max_accel mean something for 3D "
-        "printers only.</footer>",
+        "move, in the worst case of all frequencies up to 5 % off. " + _klipper_note(calibration) + "</footer>",
         "</body></html>",
     ]
     return "\n".join(part for part in parts if part) + "\n"
 
 
 def klipper_sentence(calibration: Calibration) -> str:
-    """What Klipper itself would choose, for comparison."""
+    """What Klipper itself would choose, for comparison; empty where Klipper has nothing to say."""
     fit = calibration.klipper
+    if fit is None:
+        return ""
     return (
         f"For comparison, Klipper itself would choose {fit.name} at {fit.frequency:.1f} Hz. By its own measure, which "
         f"assumes damping 0.075 to 0.15, that leaves {100.0 * fit.score.remaining_vibration:.1f} % of the vibration; "
         f"smoothing {fit.score.smoothing:.3f} mm, max_accel {fit.score.maximum_acceleration:.0f} mm/s²."
+    )
+
+
+def _klipper_note(calibration: Calibration) -> str:
+    if calibration.klipper is None:
+        return ""
+    return (
+        "Klipper's measures: damping 0.075 to 0.15, 5000 mm/s², 5 mm/s through corners; smoothing and max_accel mean "
+        "something for 3D printers only."
     )
 
 
@@ -108,12 +117,11 @@ def _trouble(calibration: Calibration) -> str:
 
 
 def _candidates(calibration: Calibration) -> str:
-    head = (
-        "<tr><th>shaper</th><th>impulses</th><th>duration<br>[ms]</th><th>vibration left<br>at 5 % error [%]</th>"
-        "<th>by Klipper's<br>measure [%]</th><th>smoothing<br>[mm]</th><th>max_accel<br>[mm/s²]</th><th></th></tr>"
-    )
+    head = "<tr><th>shaper</th><th>impulses</th><th>duration<br>[ms]</th><th>vibration left<br>at 5 % error [%]</th>"
+    if calibration.klipper is not None:
+        head += "<th>by Klipper's<br>measure [%]</th><th>smoothing<br>[mm]</th><th>max_accel<br>[mm/s²]</th>"
     rows = "".join(_candidate(calibration, candidate) for candidate in calibration.candidates)
-    return f'<div class="tables"><table><thead>{head}</thead><tbody>{rows}</tbody></table></div>'
+    return f'<div class="tables"><table><thead>{head}<th></th></tr></thead><tbody>{rows}</tbody></table></div>'
 
 
 def _candidate(calibration: Calibration, candidate: Candidate) -> str:
@@ -121,13 +129,19 @@ def _candidate(calibration: Calibration, candidate: Candidate) -> str:
     note = "chosen" if chosen else candidate.excluded
     kind = "chosen" if chosen else "excluded" if candidate.excluded else ""
     score = candidate.score
-    return (
-        f'<tr class="{kind}"><td>{escape(candidate.name)}</td><td>{len(candidate.shaper)}</td>'
-        f"<td>{1e3 * candidate.shaper.duration:.1f}</td><td>{100.0 * candidate.left:.1f}</td>"
-        f"<td>{100.0 * score.remaining_vibration:.1f}</td>"
-        f"<td>{score.smoothing:.3f}</td><td>{score.maximum_acceleration:.0f}</td>"
-        f'<td class="note">{escape(note)}</td></tr>'
-    )
+    cells = [
+        f"{len(candidate.shaper)}",
+        f"{1e3 * candidate.shaper.duration:.1f}",
+        f"{100.0 * candidate.left:.1f}",
+    ]
+    if calibration.klipper is not None:
+        cells += [
+            f"{100.0 * score.remaining_vibration:.1f}",
+            f"{score.smoothing:.3f}",
+            f"{score.maximum_acceleration:.0f}",
+        ]
+    row = "".join(f"<td>{cell}</td>" for cell in cells)
+    return f'<tr class="{kind}"><td>{escape(candidate.name)}</td>{row}<td class="note">{escape(note)}</td></tr>'
 
 
 def _modes(calibration: Calibration) -> str:
@@ -138,8 +152,8 @@ def _modes(calibration: Calibration) -> str:
         "<th>share of vibration</th></tr>"
     )
     rows = "".join(
-        f"<tr><td>{mode.mode.frequency:.2f}</td>"
-        f"<td>{mode.frequency_interval[0]:.2f} … {mode.frequency_interval[1]:.2f}</td>"
+        f"<tr><td>{mode.mode.frequency:.4g}</td>"
+        f"<td>{mode.frequency_interval[0]:.4g} … {mode.frequency_interval[1]:.4g}</td>"
         f"<td>{mode.mode.damping:.4f}</td>"
         f"<td>{mode.damping_interval[0]:.4f} … {mode.damping_interval[1]:.4f}</td>"
         f"<td>{100.0 * mode.share:.0f} %</td></tr>"

@@ -6,6 +6,8 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
+import numpy as np
+
 from preshape import identify
 from preshape.errors import InputError
 from preshape.export import klipper
@@ -18,6 +20,9 @@ from preshape.workflow.simulate import simulate_move
 from preshape.workflow.spectra import scored_spectrum
 
 __all__ = ["calibrate"]
+
+KLIPPER_RANGE = (10.0, 200.0)
+"""Frequencies [Hz] at which Klipper looks for resonances: below it fades the spectrum out, above it looks away."""
 
 
 def calibrate(
@@ -72,7 +77,7 @@ def calibrate(
     measured = tuple(_measured(Path(path), damping, sample_rate) for path in paths)
     modes = merged_modes([file.identification for file in measured])
     spectra = klipper.as_spectra([(file.scored.frequencies, file.scored.power) for file in measured])
-    stock = klipper.recommend(spectra).chosen
+    stock = klipper.recommend(spectra).chosen if _in_klipper_s_range(spectra) else None
     clear = all(file.identification.clear for file in measured)
     candidates = ranked(
         designed_candidates(
@@ -107,6 +112,12 @@ def calibrate(
         tolerance=tolerance,
         maximum_impulses=maximum_impulses,
     )
+
+
+def _in_klipper_s_range(spectra: tuple[klipper.Spectrum, ...]) -> bool:
+    """Whether Klipper could shape the loudest vibration: its measures would only mislead for a crane."""
+    loudest = [float(spectrum.frequencies[np.argmax(spectrum.psd)]) for spectrum in spectra]
+    return min(loudest) >= KLIPPER_RANGE[0] and max(loudest) <= KLIPPER_RANGE[1]
 
 
 def _measured(path: Path, damping: float | None, sample_rate: float | None) -> MeasuredFile:

@@ -53,21 +53,24 @@ SEARCH_FACTORS = (0.6, 2.5)
 SEARCH_RATIO = 1.003
 """Ratio of neighbouring frequencies in the search: a third of a percent is finer than any machine holds."""
 
-LOUD = 0.2
-"""Bins above this fraction of the highest one bound the search."""
+COARSE_RATIO, WIDEST_SEARCH = 1.01, 60.0
+"""The same on a measurement that is not clear, and the ratio of highest to lowest frequency searched there."""
+
+LOUD = 0.02
+"""What is above this fraction of the loudest bounds the search."""
 
 
 def designed_candidates(
     spectra: Sequence[klipper.Spectrum],
     modes: Sequence[IdentifiedMode],
-    stock: klipper.KlipperFit,
+    stock: klipper.KlipperFit | None,
     *,
     tolerance: float,
     clear: bool,
     damping: float | None = None,
     maximum_impulses: int | None = None,
 ) -> Iterator[Candidate]:
-    """All candidates with their scores, in no order; `stock` is what Klipper itself would choose.
+    """All candidates with their scores, in no order; `stock` is what Klipper itself would choose, if anything.
 
     A family that does not exist at this damping (EI has a limit) is left out; one with more impulses than the
     controller holds is kept and marked, so that the user sees what the limit costs.
@@ -85,7 +88,7 @@ def designed_candidates(
             excluded=f"more than {maximum_impulses} impulses" if too_many else "",
         )
 
-    grid = _search_grid(spectra)
+    grid = _search_grid(lines, clear)
     for name, family in TUNED.items():
         try:
             unit = family(Mode(1.0, ratio))
@@ -93,7 +96,8 @@ def designed_candidates(
             continue
         frequency = _tuned(remaining_amplitudes(unit, lines, grid), grid, tolerance)
         yield candidate(f"{name} at {frequency:.4g} Hz", family(Mode(frequency, ratio)))
-    yield candidate(f"Klipper's {stock.name} at {stock.frequency:.1f} Hz", stock.shaper)
+    if stock is not None:
+        yield candidate(f"Klipper's {stock.name} at {stock.frequency:.1f} Hz", stock.shaper)
     if len(modes) > 1:
         wanted = Modes([mode.mode for mode in modes])
         for name, family_of_several in SEVERAL.items():
@@ -106,15 +110,17 @@ def _lines(
     """What a shaper has to still: the modes where they can be trusted, or else everything that was measured."""
     if clear and modes:
         return lines_of_modes(modes)
-    return lines_of_spectra(spectra, klipper.TESTED_DAMPINGS if damping is None else (damping,))
+    return lines_of_spectra(spectra, DEFAULT_DAMPING if damping is None else damping)
 
 
-def _search_grid(spectra: Sequence[klipper.Spectrum]) -> NDArray[np.float64]:
+def _search_grid(lines: Sequence[Lines], clear: bool) -> NDArray[np.float64]:
     """Frequencies to try [Hz], evenly spaced in ratio, around everything loud."""
-    loud = np.concatenate([s.frequencies[s.psd >= LOUD * s.psd.max()] for s in spectra])
+    loud = np.concatenate([one.frequencies[one.weights >= LOUD * one.weights.max()] for one in lines])
     loud = loud[loud > 0.0]
     low, high = SEARCH_FACTORS[0] * float(loud.min()), SEARCH_FACTORS[1] * float(loud.max())
-    return np.geomspace(low, high, int(np.ceil(np.log(high / low) / np.log(SEARCH_RATIO))) + 2)
+    ratio = SEARCH_RATIO if clear else COARSE_RATIO
+    low = low if clear else max(low, high / WIDEST_SEARCH)
+    return np.geomspace(low, high, int(np.ceil(np.log(high / low) / np.log(ratio))) + 2)
 
 
 def _tuned(left: NDArray[np.float64], grid: NDArray[np.float64], tolerance: float) -> float:

@@ -12,8 +12,8 @@ __all__ = ["merged_modes"]
 SAME_MODE = 0.05
 """Modes of two files that differ by less than this fraction of their frequency are one mode."""
 
-SMALLEST_SHARE = 0.05
-"""A mode with less of the vibration than this is not worth impulses of its own."""
+SMALLEST_SHARE = 0.01
+"""A mode with less of the vibration's power than this (a tenth of its amplitude) is not worth impulses of its own."""
 
 
 def merged_modes(identifications: Sequence[Identification], maximum: int = 4) -> tuple[IdentifiedMode, ...]:

@@ -40,15 +40,13 @@ def lines_of_modes(modes: Sequence[IdentifiedMode]) -> list[Lines]:
     return [Lines(frequencies, np.minimum(np.array(variant), 0.99), shares) for variant in variants]
 
 
-def lines_of_spectra(spectra: Sequence[klipper.Spectrum], dampings: Sequence[float]) -> list[Lines]:
-    """Where no mode can be trusted: every frequency by its measured power, each spectrum at each damping ratio."""
+def lines_of_spectra(spectra: Sequence[klipper.Spectrum], damping: float) -> list[Lines]:
+    """Where no mode can be trusted: every frequency by its measured power, all at one damping ratio."""
     found = []
     for spectrum in spectra:
         weights = np.maximum(spectrum.psd - FLOOR * spectrum.psd.max(), 0.0)
         loud = weights > 0.0
-        for damping in dampings:
-            ratios = np.full(int(loud.sum()), damping)
-            found.append(Lines(spectrum.frequencies[loud], ratios, weights[loud]))
+        found.append(Lines(spectrum.frequencies[loud], np.full(int(loud.sum()), damping), weights[loud]))
     return found
 
 
