@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from preshape.report import Calibration, klipper_sentence
+from preshape.report import Calibration, TextTable, candidate_table, klipper_sentence, mode_table
 from preshape.shaper import Shaper
 from preshape.workflow import Analysis
 
@@ -27,49 +27,16 @@ def console(stderr: bool = False) -> Console:
 def calibration_screen(calibration: Calibration) -> None:
     """Modes, troubles, candidates with the choice marked, the reason."""
     screen = console()
-    modes = Table(title="Modes found", title_justify="left", title_style="bold", box=None, pad_edge=False)
-    for title in ("natural frequency", "95 % interval", "damping ratio", "95 % interval", "share"):
-        modes.add_column(title, justify="right")
-    for mode in calibration.modes:
-        modes.add_row(
-            f"{mode.mode.frequency:.4g} Hz",
-            f"{mode.frequency_interval[0]:.4g} - {mode.frequency_interval[1]:.4g}",
-            f"{mode.mode.damping:.4f}",
-            f"{mode.damping_interval[0]:.4f} - {mode.damping_interval[1]:.4f}",
-            f"{100.0 * mode.share:.0f} %",
-        )
-    screen.print(modes if calibration.modes else Text("No mode stands out of the measurement.", style="bold"))
+    if calibration.modes:
+        screen.print(_rich_table("Modes found", mode_table(calibration), [None] * len(calibration.modes)))
+    else:
+        screen.print(Text("No mode stands out of the measurement.", style="bold"))
     for sentence in calibration.trouble:
         screen.print(Text(f"! {sentence}", style="bold yellow"))
-    table = Table(
-        title="\nCandidates, the best first", title_justify="left", title_style="bold", box=None, pad_edge=False
-    )
-    table.add_column("")
-    table.add_column("shaper", no_wrap=True)
-    for title in ("impulses", "duration\n[ms]", "vibration left at\n5 % error [%]"):
-        table.add_column(title, justify="right")
-    if calibration.klipper is not None:
-        for title in ("by Klipper's\nmeasure [%]", "smoothing\n[mm]", "max_accel\n[mm/s²]"):
-            table.add_column(title, justify="right")
-    table.add_column("")
-    for candidate in calibration.candidates:
-        chosen = candidate is calibration.chosen
-        score = candidate.score
-        cells = [
-            candidate.name,
-            f"{len(candidate.shaper)}",
-            f"{1e3 * candidate.shaper.duration:.1f}",
-            f"{100.0 * candidate.left:.1f}",
-        ]
-        if calibration.klipper is not None:
-            cells += [
-                f"{100.0 * score.remaining_vibration:.1f}",
-                f"{score.smoothing:.3f}",
-                f"{score.maximum_acceleration:.0f}",
-            ]
-        style = "bold cyan" if chosen else "dim" if candidate.excluded else None
-        table.add_row(">" if chosen else "", *cells, candidate.excluded, style=style)
-    screen.print(table)
+    styles = [
+        "bold cyan" if one is calibration.chosen else "dim" if one.excluded else None for one in calibration.candidates
+    ]
+    screen.print(_rich_table("\nCandidates, the best first", candidate_table(calibration), styles))
     screen.print()
     screen.print(Text(calibration.reason, style="bold"))
     if calibration.klipper is not None:
@@ -116,6 +83,17 @@ def analysis_screen(analysis: Analysis) -> None:
             f"{row.total_insensitivity:.4f}",
         )
     screen.print(table)
+
+
+def _rich_table(title: str, table: TextTable, styles: list[str | None]) -> Table:
+    """A table on the terminal; the first column is left-aligned, a styled row is marked in front."""
+    drawn = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False)
+    drawn.add_column("")
+    for number, lines in enumerate(table.titles):
+        drawn.add_column("\n".join(lines), justify="left" if number == 0 else "right", no_wrap=True)
+    for row, style in zip(table.rows, styles, strict=True):
+        drawn.add_row(">" if "chosen" in row else "", *row, style=style)
+    return drawn
 
 
 def _impulses(shaper: Shaper) -> Table:

@@ -1,51 +1,19 @@
-"""What every kind of command asks of its arguments, and the sentences it answers with."""
+"""What every kind of command asks of its times, and the sentences it answers with."""
 
 from __future__ import annotations
 
 import math
-from numbers import Real
 
+from preshape.checks import positive
 from preshape.errors import InputError
 
-__all__ = ["GRID_SLACK", "nonzero", "not_negative", "positive", "sample_count", "whole_samples"]
+__all__ = ["GRID_SLACK", "sample_count", "whole_samples"]
 
 GRID_SLACK = 1e-9
 """A time this near a sample, in sample intervals, is on it: what rounding in a quotient of two decimals amounts to."""
 
 MOST_SAMPLES = 20_000_000
 """A longer command is a mistaken sample interval: 20 million samples are 160 MB an array."""
-
-
-def _finite(name: str, value: object, unit: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise InputError(f"{name} must be a number in {unit}, not {value!r}.")
-    if not math.isfinite(value):
-        raise InputError(f"{name} is {value:g}: give a finite number in {unit}.")
-    return float(value)
-
-
-def positive(name: str, value: object, unit: str) -> float:
-    """`value` as a float, if it is finite and above zero."""
-    number = _finite(name, value, unit)
-    if number <= 0.0:
-        raise InputError(f"{name} is {number:g} {unit}: give a value above 0 {unit}.")
-    return number
-
-
-def not_negative(name: str, value: object, unit: str) -> float:
-    """`value` as a float, if it is finite and not below zero."""
-    number = _finite(name, value, unit)
-    if number < 0.0:
-        raise InputError(f"{name} is {number:g} {unit}: give 0 {unit} or more.")
-    return number
-
-
-def nonzero(name: str, value: object, unit: str) -> float:
-    """`value` as a float, if it is finite and not zero; its sign is the direction."""
-    number = _finite(name, value, unit)
-    if number == 0.0:
-        raise InputError(f"{name} is 0 {unit}, which commands nothing: give a value above or below 0 {unit}.")
-    return number
 
 
 def sample_count(time: float, dt: float) -> int:

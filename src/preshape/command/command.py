@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape.command.checks import positive
+from preshape.checks import positive
 from preshape.errors import InputError
 
 __all__ = ["Command"]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from preshape.command.checks import nonzero, not_negative, positive, sample_count, whole_samples
+from preshape.checks import nonzero, not_negative, positive
+from preshape.command.checks import sample_count, whole_samples
 from preshape.command.command import Command
 
 __all__ = ["pulse"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from preshape.command.checks import nonzero, positive
+from preshape.checks import nonzero, positive
 from preshape.command.command import Command
 from preshape.command.symmetric import Segment, symmetric_move
 

@@ -13,7 +13,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape.command.checks import not_negative, positive, sample_count
+from preshape.checks import not_negative, positive
+from preshape.command.checks import sample_count
 from preshape.command.command import Command
 
 __all__ = ["Segment", "symmetric_move"]

@@ -10,7 +10,8 @@ import math
 
 import numpy as np
 
-from preshape.design.each_mode import convolve_each, whole_number
+from preshape.checks import whole_number
+from preshape.design.each_mode import convolve_each
 from preshape.mode import Mode, ModesLike
 from preshape.shaper import Shaper
 

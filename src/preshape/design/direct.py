@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from preshape.design.each_mode import recorded, whole_number
+from preshape.checks import whole_number
+from preshape.design.each_mode import recorded
 from preshape.engine import shortest_positive
 from preshape.errors import InputError
 from preshape.mode import Modes, ModesLike

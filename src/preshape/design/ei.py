@@ -7,7 +7,8 @@ exactly at the tolerance and a zero on both sides of each, are solved by Newton'
 
 from __future__ import annotations
 
-from preshape.design.each_mode import check_tolerance, convolve_each, whole_number
+from preshape.checks import tolerance_of, whole_number
+from preshape.design.each_mode import convolve_each
 from preshape.design.hump_equations import equal_humps
 from preshape.mode import Mode, ModesLike
 from preshape.shaper import Shaper
@@ -56,7 +57,7 @@ def k_hump_ei(modes: ModesLike, humps: int, tolerance: float = 0.05) -> Shaper:
 
 
 def _family(modes: ModesLike, family: str, humps: int, tolerance: float) -> Shaper:
-    height = check_tolerance(tolerance)
+    height = tolerance_of(tolerance)
 
     def one(mode: Mode) -> Shaper:
         times, amplitudes = equal_humps(humps, height, mode.damping)

@@ -1,26 +1,13 @@
-"""What plants ask of the numbers given to them, and the sentences they answer with."""
+"""What plants ask of the rows of numbers given to them, and the sentences they answer with."""
 
 from __future__ import annotations
-
-import math
-from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from preshape.errors import InputError
 
-__all__ = ["finite_row", "gain_matrix", "one_each", "positive", "same_length"]
-
-
-def positive(name: str, value: object, unit: str) -> float:
-    """`value` as a float, if it is finite and above zero."""
-    if isinstance(value, bool) or not isinstance(value, Real):
-        raise InputError(f"{name} must be a number in {unit}, not {value!r}.")
-    number = float(value)
-    if not (math.isfinite(number) and number > 0.0):
-        raise InputError(f"{name} is {number:g} {unit}: give a finite value above 0 {unit}.")
-    return number
+__all__ = ["finite_row", "gain_matrix", "one_each", "same_length"]
 
 
 def finite_row(name: str, values: ArrayLike) -> NDArray[np.float64]:

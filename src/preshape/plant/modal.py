@@ -14,9 +14,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from preshape.checks import positive
 from preshape.errors import InputError
 from preshape.mode import Modes, ModesLike
-from preshape.plant.checks import finite_row, gain_matrix, one_each, positive, same_length
+from preshape.plant.checks import finite_row, gain_matrix, one_each, same_length
 from preshape.plant.response import Response
 
 __all__ = ["ModalPlant"]

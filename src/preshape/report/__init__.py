@@ -4,6 +4,7 @@ from preshape.report.calibration import FREQUENCY_ERROR, Calibration, Candidate,
 from preshape.report.calibration_figure import calibration_figure
 from preshape.report.figures import as_png, as_svg
 from preshape.report.page import calibration_page, klipper_sentence
+from preshape.report.tables import TextTable, candidate_table, mode_table
 
 __all__ = [
     "FREQUENCY_ERROR",
@@ -11,9 +12,12 @@ __all__ = [
     "Candidate",
     "MeasuredFile",
     "SimulatedMove",
+    "TextTable",
     "as_png",
     "as_svg",
     "calibration_figure",
     "calibration_page",
+    "candidate_table",
     "klipper_sentence",
+    "mode_table",
 ]

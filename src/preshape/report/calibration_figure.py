@@ -8,6 +8,7 @@ import numpy as np
 
 from preshape.report.calibration import Calibration
 from preshape.report.figures import ACCENT, INK, MUTED, SECOND, SOFT, new_figure, tidy
+from preshape.report.tables import time_unit
 from preshape.vibration import residual_vibration
 
 if TYPE_CHECKING:
@@ -44,9 +45,10 @@ def calibration_figure(calibration: Calibration) -> Figure:
     _move(figure.add_subplot(grid[1, 1]), calibration)
     shaper = calibration.shaper
     proof = "; proved shortest" if shaper.design.status == "optimal" else ""
-    warning = "" if calibration.clear else "See to the machine first. Until then: "
+    warning = "" if calibration.clear else "See to the machine first. Until then:\n"
+    unit = time_unit(shaper)
     figure.suptitle(
-        f"{warning}{calibration.chosen.name}: {len(shaper)} impulses, {1e3 * shaper.duration:.1f} ms, "
+        f"{warning}{calibration.chosen.name}: {len(shaper)} impulses, {unit.show(shaper.duration)}, "
         f"at most {100.0 * calibration.chosen.left:.1f} % vibration left{proof}",
         fontsize=13,
         fontweight="bold",
@@ -88,7 +90,7 @@ def _spectrum(axes: Axes, calibration: Calibration) -> None:
     for number, mode in enumerate(sorted(calibration.modes, key=lambda mode: mode.mode.frequency)):
         axes.axvline(mode.mode.frequency, color=INK, linewidth=1.0)
         axes.annotate(
-            f"{mode.mode.frequency:.1f} Hz\ndamping {mode.mode.damping:.3f}",
+            f"{mode.mode.frequency:.4g} Hz\ndamping {mode.mode.damping:.3f}",
             (mode.mode.frequency, 1.12 if number % 2 == 0 else 1.3),
             xytext=(4, 0),
             textcoords="offset points",
@@ -124,7 +126,8 @@ def _highest_shown(calibration: Calibration) -> float:
 def _impulses(axes: Axes, calibration: Calibration) -> None:
     """Times and amplitudes."""
     shaper = calibration.shaper
-    times = 1e3 * shaper.times
+    unit = time_unit(shaper)
+    times = unit.per_second * shaper.times
     axes.vlines(times, 0.0, shaper.amplitudes, color=ACCENT, linewidth=3.0)
     axes.plot(times, shaper.amplitudes, "o", color=ACCENT, markersize=6)
     top = float(shaper.amplitudes.max())
@@ -136,7 +139,7 @@ def _impulses(axes: Axes, calibration: Calibration) -> None:
     axes.set_ylim(0.0, 1.2 * top)
     span = float(times[-1])
     axes.set_xlim(-0.1 * span, 1.1 * span)
-    tidy(axes, "time [ms]", "amplitude [-]", "The shaper's impulses")
+    tidy(axes, f"time [{unit.name}]", "amplitude [-]", "The shaper's impulses")
 
 
 def _move(axes: Axes, calibration: Calibration) -> None:
@@ -146,17 +149,18 @@ def _move(axes: Axes, calibration: Calibration) -> None:
         axes.set_axis_off()
         axes.text(0.5, 0.5, "no mode was found:\nno move was simulated", ha="center", va="center", color=INK)
         return
-    times = 1e3 * move.times
-    axes.axvspan(0.0, 1e3 * move.end_unshaped, color="#f3f3f3", linewidth=0)
+    unit = time_unit(calibration.shaper)
+    times, end = unit.per_second * move.times, unit.per_second * move.end_shaped
+    axes.axvspan(0.0, unit.per_second * move.end_unshaped, color="#f3f3f3", linewidth=0)
     axes.plot(times, 100.0 * move.unshaped, color=SECOND, linewidth=1.3, linestyle="--", label="unshaped")
     axes.plot(times, 100.0 * move.shaped, color=ACCENT, linewidth=1.9, label="shaped")
-    axes.axvline(1e3 * move.end_shaped, color=ACCENT, linewidth=0.9, linestyle=(0, (1, 2)))
+    axes.axvline(end, color=ACCENT, linewidth=0.9, linestyle=(0, (1, 2)))
     peak = 100.0 * max(float(np.abs(move.unshaped).max()), float(np.abs(move.shaped).max()))
     axes.set_ylim(-1.15 * peak, 1.45 * peak)
     axes.annotate(
-        f"shaped move ends {1e3 * (move.end_shaped - move.end_unshaped):.1f} ms later,\n"
+        f"shaped move ends {unit.show(move.end_shaped - move.end_unshaped)} later,\n"
         f"leaves {_percent(move.left)} of the vibration",
-        (1e3 * move.end_shaped, 1.4 * peak),
+        (end, 1.4 * peak),
         xytext=(4, 0),
         textcoords="offset points",
         va="top",
@@ -164,5 +168,7 @@ def _move(axes: Axes, calibration: Calibration) -> None:
         color=ACCENT,
     )
     axes.set_xlim(0.0, times[-1])
-    tidy(axes, "time [ms]", "vibration [% of what is left unshaped]", "A quick move of these modes (simulated)")
+    tidy(
+        axes, f"time [{unit.name}]", "vibration [% of what is left unshaped]", "A quick move of these modes (simulated)"
+    )
     axes.legend(fontsize=8.5, loc="lower right", frameon=True, framealpha=0.9, edgecolor="white")

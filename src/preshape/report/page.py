@@ -5,9 +5,10 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
-from preshape.report.calibration import Calibration, Candidate
+from preshape.report.calibration import Calibration
 from preshape.report.calibration_figure import calibration_figure
 from preshape.report.figures import as_svg
+from preshape.report.tables import TextTable, candidate_table, mode_table, time_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -28,8 +29,7 @@ p { margin: .3rem 0; }
 .tables { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { padding: .28rem .6rem; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; }
-th:first-child, td:first-child, td.note { text-align: left; }
-td.note { white-space: normal; color: var(--soft); }
+th:first-child, td:first-child { text-align: left; }
 th { font-weight: 600; color: var(--soft); vertical-align: bottom; }
 tr.chosen td { font-weight: 700; color: var(--accent); }
 tr.excluded td { color: #8a8a8a; }
@@ -117,57 +117,34 @@ def _trouble(calibration: Calibration) -> str:
 
 
 def _candidates(calibration: Calibration) -> str:
-    head = "<tr><th>shaper</th><th>impulses</th><th>duration<br>[ms]</th><th>vibration left<br>at 5 % error [%]</th>"
-    if calibration.klipper is not None:
-        head += "<th>by Klipper's<br>measure [%]</th><th>smoothing<br>[mm]</th><th>max_accel<br>[mm/s²]</th>"
-    rows = "".join(_candidate(calibration, candidate) for candidate in calibration.candidates)
-    return f'<div class="tables"><table><thead>{head}<th></th></tr></thead><tbody>{rows}</tbody></table></div>'
-
-
-def _candidate(calibration: Calibration, candidate: Candidate) -> str:
-    chosen = candidate is calibration.chosen
-    note = "chosen" if chosen else candidate.excluded
-    kind = "chosen" if chosen else "excluded" if candidate.excluded else ""
-    score = candidate.score
-    cells = [
-        f"{len(candidate.shaper)}",
-        f"{1e3 * candidate.shaper.duration:.1f}",
-        f"{100.0 * candidate.left:.1f}",
+    kinds = [
+        "chosen" if one is calibration.chosen else "excluded" if one.excluded else "" for one in calibration.candidates
     ]
-    if calibration.klipper is not None:
-        cells += [
-            f"{100.0 * score.remaining_vibration:.1f}",
-            f"{score.smoothing:.3f}",
-            f"{score.maximum_acceleration:.0f}",
-        ]
-    row = "".join(f"<td>{cell}</td>" for cell in cells)
-    return f'<tr class="{kind}"><td>{escape(candidate.name)}</td>{row}<td class="note">{escape(note)}</td></tr>'
+    return _html_table(candidate_table(calibration), kinds)
 
 
 def _modes(calibration: Calibration) -> str:
     if not calibration.modes:
         return "<p>No mode stands out of the measurement.</p>"
-    head = (
-        "<tr><th>natural frequency [Hz]</th><th>95 % interval</th><th>damping ratio</th><th>95 % interval</th>"
-        "<th>share of vibration</th></tr>"
-    )
+    return _html_table(mode_table(calibration), [""] * len(calibration.modes))
+
+
+def _html_table(table: TextTable, kinds: list[str]) -> str:
+    """A table whose rows are of the given kinds, which are classes of the style sheet."""
+    head = "".join(f"<th>{'<br>'.join(escape(line) for line in title)}</th>" for title in table.titles)
     rows = "".join(
-        f"<tr><td>{mode.mode.frequency:.4g}</td>"
-        f"<td>{mode.frequency_interval[0]:.4g} … {mode.frequency_interval[1]:.4g}</td>"
-        f"<td>{mode.mode.damping:.4f}</td>"
-        f"<td>{mode.damping_interval[0]:.4f} … {mode.damping_interval[1]:.4f}</td>"
-        f"<td>{100.0 * mode.share:.0f} %</td></tr>"
-        for mode in calibration.modes
+        f'<tr class="{kind}">' + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>"
+        for kind, row in zip(kinds, table.rows, strict=True)
     )
-    return f'<div class="tables"><table><thead>{head}</thead><tbody>{rows}</tbody></table></div>'
+    return f'<div class="tables"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
 
 
 def _impulses(calibration: Calibration) -> str:
-    shaper = calibration.shaper
-    rows = "".join(
-        f"<tr><td>{i}</td><td>{1e3 * t:.4f}</td><td>{a:.6f}</td></tr>"
+    shaper, unit = calibration.shaper, time_unit(calibration.shaper)
+    rows = tuple(
+        (f"{i}", f"{unit.per_second * t:.{unit.decimals + 3}f}", f"{a:.6f}")
         for i, (t, a) in enumerate(zip(shaper.times, shaper.amplitudes, strict=True), start=1)
     )
-    head = "<tr><th>impulse</th><th>time [ms]</th><th>amplitude [-]</th></tr>"
+    table = TextTable((("impulse",), (f"time [{unit.name}]",), ("amplitude [-]",)), rows)
     proof = "<p>Proved shortest: the certificate is in shaper.json.</p>" if shaper.design.status == "optimal" else ""
-    return f'{proof}<div class="tables"><table><thead>{head}</thead><tbody>{rows}</tbody></table></div>'
+    return proof + _html_table(table, [""] * len(rows))

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from preshape.checks import tolerance_of
 from preshape.errors import InputError
 from preshape.kernel import exponential_sum
 from preshape.mode import ModesLike, one_mode
@@ -70,7 +71,7 @@ def tolerated_bands(
     """
     from scipy.optimize import brentq
 
-    _check_tolerance(tolerance)
+    tolerance_of(tolerance)
     f_low, f_high = (float(value) for value in checked_frequency_and_damping([low, high], damping)[0])
     if f_high <= f_low:
         raise InputError(f"the range {low:g} ... {high:g} Hz is empty: give the lower frequency first.")
@@ -126,7 +127,7 @@ def insensitivity(shaper: Shaper, mode: ModesLike, tolerance: float = 0.05) -> I
     0.06369
     """
     centre = one_mode(mode)
-    _check_tolerance(tolerance)
+    tolerance_of(tolerance)
     f = centre.frequency
     if float(residual_vibration(shaper, f, centre.damping)) > tolerance * (1.0 + TOUCHING):
         return Insensitivity(f, f, 0.0)
@@ -195,8 +196,3 @@ def _curve_functions(
         return 2.0 * np.real(base.conj() * change)
 
     return value, slope
-
-
-def _check_tolerance(tolerance: float) -> None:
-    if not 0.0 < tolerance < 1.0:
-        raise InputError(f"tolerance {tolerance:g} is outside (0, 1): give 0.05 for 5 % of the unshaped vibration.")

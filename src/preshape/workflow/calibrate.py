@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from preshape import identify
+from preshape.checks import tolerance_of
 from preshape.errors import InputError
 from preshape.export import klipper
 from preshape.mode import Mode
@@ -68,8 +69,7 @@ def calibrate(
     paths = [files] if isinstance(files, str | os.PathLike) else list(files)
     if not paths:
         raise InputError("no measurement was given: name at least one file.")
-    if not 0.0 < tolerance < 1.0:
-        raise InputError(f"tolerance {tolerance:g} is outside (0, 1): give 0.05 for 5 % of the measured vibration.")
+    tolerance_of(tolerance)
     if maximum_impulses is not None and maximum_impulses < 2:
         raise InputError(f"{maximum_impulses} impulses cannot shape anything: the shortest shaper has 2.")
     if damping is not None:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike
 
+from preshape.checks import tolerance_of
 from preshape.errors import InputError
 from preshape.mode import Mode, Modes
 from preshape.provenance import Design
@@ -162,9 +163,7 @@ def ei(frequency: float, damping: float = DEFAULT_DAMPING, *, tolerance: float =
     [0.3549, 0.453, 0.1921]
     """
     mode = _mode("ei", frequency, damping)
-    if not 0.0 < tolerance < 1.0:
-        raise InputError(f"tolerance {tolerance:g} is outside (0, 1): give 0.05 for 5 %.")
-    z, v = mode.damping, tolerance
+    z, v = mode.damping, tolerance_of(tolerance)
     first = 0.24968 + 0.24961 * v + (0.80008 + 1.23328 * v) * z + (0.49599 + 3.17316 * v) * z**2
     last = 0.25149 + 0.21474 * v + (-0.83249 + 1.41498 * v) * z + (0.85181 - 4.90094 * v) * z**2
     middle = 0.49990 + polyval(z, [0.0, 0.46159, 4.26169, 1.75601]) * v

@@ -1,0 +1,88 @@
+"""The tables of a calibration as text, the same on the page and on the terminal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from preshape.report.calibration import Calibration, Candidate
+from preshape.shaper import Shaper
+
+__all__ = ["TextTable", "TimeUnit", "candidate_table", "mode_table", "time_unit"]
+
+SECONDS_FROM = 0.5
+"""A shaper of this duration [s] or more is shown in seconds, a shorter one in milliseconds."""
+
+
+@dataclass(frozen=True)
+class TextTable:
+    """Column titles, each of one or two lines, and rows of cells."""
+
+    titles: tuple[tuple[str, ...], ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class TimeUnit:
+    """Units in a second, and the name of one."""
+
+    per_second: float
+    name: str
+    decimals: int
+
+    def show(self, seconds: float) -> str:
+        """A duration with its unit."""
+        return f"{self.per_second * seconds:.{self.decimals}f} {self.name}"
+
+
+def time_unit(shaper: Shaper) -> TimeUnit:
+    """Seconds for a crane, milliseconds for a printer."""
+    return TimeUnit(1.0, "s", 3) if shaper.duration >= SECONDS_FROM else TimeUnit(1e3, "ms", 1)
+
+
+def mode_table(calibration: Calibration) -> TextTable:
+    """Frequencies, dampings, their intervals and shares."""
+    titles = ("natural frequency [Hz]", "95 % interval", "damping ratio", "95 % interval", "share of vibration")
+    rows = tuple(
+        (
+            f"{mode.mode.frequency:.4g}",
+            f"{mode.frequency_interval[0]:.4g} - {mode.frequency_interval[1]:.4g}",
+            f"{mode.mode.damping:.4f}",
+            f"{mode.damping_interval[0]:.4f} - {mode.damping_interval[1]:.4f}",
+            f"{100.0 * mode.share:.0f} %",
+        )
+        for mode in calibration.modes
+    )
+    return TextTable(tuple((title,) for title in titles), rows)
+
+
+def candidate_table(calibration: Calibration) -> TextTable:
+    """The candidates, the best first; Klipper's measures only where they mean something."""
+    unit = time_unit(calibration.shaper)
+    titles: list[tuple[str, ...]] = [
+        ("shaper",),
+        ("impulses",),
+        ("duration", f"[{unit.name}]"),
+        ("vibration left", "at 5 % error [%]"),
+    ]
+    if calibration.klipper is not None:
+        titles += [("by Klipper's", "measure [%]"), ("smoothing", "[mm]"), ("max_accel", "[mm/s²]")]
+    rows = tuple(_cells(calibration, candidate, unit) for candidate in calibration.candidates)
+    return TextTable((*titles, ("",)), rows)
+
+
+def _cells(calibration: Calibration, candidate: Candidate, unit: TimeUnit) -> tuple[str, ...]:
+    cells = [
+        candidate.name,
+        f"{len(candidate.shaper)}",
+        f"{unit.per_second * candidate.shaper.duration:.{unit.decimals}f}",
+        f"{100.0 * candidate.left:.1f}",
+    ]
+    if calibration.klipper is not None:
+        score = candidate.score
+        cells += [
+            f"{100.0 * score.remaining_vibration:.1f}",
+            f"{score.smoothing:.3f}",
+            f"{score.maximum_acceleration:.0f}",
+        ]
+    note = "chosen" if candidate is calibration.chosen else candidate.excluded
+    return (*cells, note)
