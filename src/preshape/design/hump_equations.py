@@ -3,8 +3,9 @@
 Time in periods, frequency as the ratio x to the mode's. Unknown are k + 2 amplitudes, their times, n = k + 1 zeros and
 k humps; the middle hump (k odd) or the middle zero (k even) stays at x = 1:
   V(zero) = 0 (real and imaginary part);  V(hump) = tolerance, V'(hump) = 0;  amplitudes sum to 1.
-Solutions are followed from z = 0 upwards. They end at a damping where the highest zero runs to infinity and the last
-two impulses merge: beyond it no such shaper exists, and we say so.
+Solutions are followed from z = 0 along their curve (pseudo-arclength continuation: for high tolerances the damping
+turns back on it and forth again). The curve ends where the highest zero runs to infinity and the last two impulses
+merge: at more damping than it has reached by then there is no such shaper, and we say so.
 """
 
 from __future__ import annotations
@@ -20,16 +21,21 @@ from preshape.errors import InputError
 
 __all__ = ["equal_humps"]
 
-FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.02, 0.05, 1e-4
-"""Steps of damping ratio while a solution is followed."""
+FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.02, 0.1, 1e-7
+"""Steps along the curve of solutions, in units of its scaled length."""
 
-SOLVED = 1e-12
-"""Largest error of the equations, humps relative to the tolerance; rounding over a small tolerance is added to it."""
+MAXIMUM_STEPS = 2000
+
+ZERO_WEIGHT = 0.05
+"""Zeros move most and matter least: this much of their change counts as length of the curve."""
+
+SOLVED, ROUNDING = 1e-12, 200.0 * np.finfo(float).eps
+"""Largest error of the equations, humps relative to the tolerance, and what rounding adds to it over a tolerance."""
 
 MAXIMUM_ITERATIONS = 12
 
-HIGHEST_ZERO = 1e3
-"""A zero at more than this multiple of the mode's frequency is none: the solution has ended."""
+HIGHEST_ZERO = 25.0
+"""A zero at more than this multiple of the mode's frequency is none: the last two impulses are one, the curve ends."""
 
 
 @dataclass(frozen=True)
@@ -52,24 +58,123 @@ class _State:
 
 @lru_cache(maxsize=256)
 def _solution(humps: int, tolerance: float, damping: float) -> _State:
-    """Follow the solution from the undamped closed form to `damping`."""
+    """Follow the curve of solutions from the undamped closed form to the first point with this damping."""
     state, z = _undamped(humps, tolerance), 0.0
-    before, z_before, step = state, 0.0, FIRST_STEP
-    while z < damping:
-        target = min(z + step, damping)
-        slope = (state.vector() - before.vector()) / (z - z_before) if z > z_before else 0.0
-        found = _newton(state.vector() + slope * (target - z), humps, tolerance, target)
+    if damping == 0.0:
+        return state
+    free, weights = _free(humps), _weights(humps)
+    tangent, reached, step = np.append(np.zeros(int(free.sum())), 1.0), 0.0, FIRST_STEP
+    for _ in range(MAXIMUM_STEPS):
+        tangent = _tangent(state, tolerance, z, free, weights, tangent)
+        found = _corrected(state, tolerance, z, free, weights, step * tangent)
         if found is None:
             step /= 2.0
             if step < SMALLEST_STEP:
-                raise InputError(
-                    f"no {humps}-hump EI shaper with tolerance {tolerance:g} exists at damping {damping:g}: its humps "
-                    f"end near damping {z:.2g}; use a smaller tolerance, fewer humps, or zvd."
-                )
-        else:
-            before, z_before, state, z = state, z, found, target
-            step = min(1.5 * step, LARGEST_STEP)
-    return state
+                break
+            continue
+        if (z - damping) * (found[1] - damping) <= 0.0:
+            part = (damping - z) / (found[1] - z)
+            start = state.vector() + part * (found[0].vector() - state.vector())
+            exact = _newton(start, humps, tolerance, damping)
+            if exact is not None:
+                return exact
+            step /= 2.0
+            continue
+        state, z = found
+        reached, step = max(reached, z), min(1.5 * step, LARGEST_STEP)
+    raise InputError(
+        f"no {humps}-hump EI shaper with tolerance {tolerance:g} exists at damping {damping:g}: its humps end near "
+        f"damping {reached:.2g}; use a smaller tolerance, fewer humps, or zvd."
+    )
+
+
+def _free(humps: int) -> NDArray[np.bool_]:
+    """Which entries of the state's vector may move: not the last impulse, not the middle hump or zero."""
+    free = np.ones(4 * (humps + 2) - 3, dtype=bool)
+    free[humps + 1] = False
+    free[2 * (humps + 2) + humps // 2 + (0 if humps % 2 == 0 else humps + 1)] = False
+    return free
+
+
+def _weights(humps: int) -> NDArray[np.float64]:
+    """Scale of each free entry, and of the damping, in the length of the curve."""
+    count = humps + 2
+    weights = np.concatenate([np.ones(2 * count), np.full(humps + 1, ZERO_WEIGHT), np.ones(humps)])
+    return np.append(weights[_free(humps)], 1.0)
+
+
+def _extended(state: _State, tolerance: float, z: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The equations, and their derivatives by the state's vector and, last column, by the damping ratio."""
+    equations, jacobian = _equations(state, tolerance, _rate(z))
+    h = 1e-7
+    ahead, _ = _equations(state, tolerance, _rate(z + h))
+    behind, _ = _equations(state, tolerance, _rate(max(z - h, 0.0)))
+    return equations, np.column_stack([jacobian, (ahead - behind) / (h + min(z, h))])
+
+
+def _tangent(
+    state: _State,
+    tolerance: float,
+    z: float,
+    free: NDArray[np.bool_],
+    weights: NDArray[np.float64],
+    before: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """The unit direction of the curve in scaled entries, pointing on from `before`."""
+    _, jacobian = _extended(state, tolerance, z)
+    direction = np.linalg.svd(jacobian[:, np.append(free, True)] / weights)[2][-1]
+    unit: NDArray[np.float64] = direction if direction @ before >= 0.0 else -direction
+    return unit
+
+
+def _corrected(
+    state: _State,
+    tolerance: float,
+    z: float,
+    free: NDArray[np.bool_],
+    weights: NDArray[np.float64],
+    move: NDArray[np.float64],
+) -> tuple[_State, float] | None:
+    """The point of the curve in the plane across `move` (scaled entries) at its end; None when there is none near."""
+    humps = state.humps.size
+    vector, damping = state.vector(), z
+    vector[free] += move[:-1] / weights[:-1]
+    damping += move[-1] / weights[-1]
+    for _ in range(MAXIMUM_ITERATIONS):
+        now = _State.from_vector(vector, humps)
+        if not (0.0 <= damping < 1.0 and _ordered(now)):
+            return None
+        equations, jacobian = _extended(now, tolerance, damping)
+        if float(np.abs(equations).max()) < _solved_below(tolerance):
+            return now, damping
+        system = np.vstack([jacobian[:, np.append(free, True)] / weights, move / np.linalg.norm(move)])
+        change = np.linalg.lstsq(system, np.append(equations, 0.0), rcond=1e-14)[0] / weights
+        vector[free] -= change[:-1]
+        damping -= change[-1]
+    return None
+
+
+def _solved_below(tolerance: float) -> float:
+    return SOLVED + ROUNDING / tolerance
+
+
+def _rate(damping: float) -> complex:
+    """The mode's rate z w + i w sqrt(1 - z^2) for a period of one."""
+    return 2.0 * math.pi * complex(damping, math.sqrt(1.0 - damping**2))
+
+
+def _ordered(state: _State) -> bool:
+    """Whether this is a shaper at all: finite, impulses in order, amplitudes positive, zeros and humps in turn."""
+    turns = np.empty(state.zeros.size + state.humps.size)
+    turns[::2], turns[1::2] = state.zeros, state.humps
+    return bool(
+        np.isfinite(state.vector()).all()
+        and (np.diff(state.times) > 0.0).all()
+        and (state.amplitudes > 0.0).all()
+        and turns[0] > 0.0
+        and (np.diff(turns) > 0.0).all()
+        and turns[-1] < HIGHEST_ZERO
+    )
 
 
 def equal_humps(humps: int, tolerance: float, damping: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -107,21 +212,14 @@ def _undamped(humps: int, tolerance: float) -> _State:
 
 def _newton(start: NDArray[np.float64], humps: int, tolerance: float, damping: float) -> _State | None:
     """Newton's method at one damping; None when it does not converge to a positive, ordered shaper."""
-    rate = 2.0 * np.pi * complex(damping, math.sqrt(1.0 - damping**2))
-    free = np.ones(start.size, dtype=bool)
-    free[humps + 1] = False  # the last impulse is the origin of time
-    middle = humps // 2
-    free[2 * (humps + 2) + middle + (0 if humps % 2 == 0 else humps + 1)] = False
-    vector = start.copy()
+    free, vector = _free(humps), start.copy()
     for _ in range(MAXIMUM_ITERATIONS):
         state = _State.from_vector(vector, humps)
-        ordered = np.diff(state.times).min() > 0.0 and 0.0 < state.zeros.min() and state.zeros.max() < HIGHEST_ZERO
-        if not (np.isfinite(vector).all() and ordered and state.amplitudes.min() > 0.0):
+        if not _ordered(state):
             return None
-        equations, jacobian = _equations(state, tolerance, rate)
-        if float(np.abs(equations).max()) < SOLVED + np.finfo(float).eps / tolerance * 8.0:
-            between = np.sort(np.concatenate([state.zeros, state.humps]))
-            return state if (np.diff(between) > 0.0).all() and (np.diff(state.zeros) > 0.0).all() else None
+        equations, jacobian = _equations(state, tolerance, _rate(damping))
+        if float(np.abs(equations).max()) < _solved_below(tolerance):
+            return state
         vector[free] -= np.linalg.lstsq(jacobian[:, free], equations, rcond=1e-14)[0]
     return None
 
