@@ -5,4 +5,12 @@ from preshape.mode import Mode, Modes
 from preshape.provenance import Certificate, Design
 from preshape.shaper import Shaper
 
-__all__ = ["Certificate", "Design", "Mode", "Modes", "Shaper", "design", "vibration"]
+__all__ = [
+    "Certificate",
+    "Design",
+    "Mode",
+    "Modes",
+    "Shaper",
+    "design",
+    "vibration",
+]

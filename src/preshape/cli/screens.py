@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from preshape.report import Calibration, TextTable, candidate_table, klipper_sentence, mode_table
+from preshape.report import Calibration, TextTable, candidate_table, exclusion_sentence, klipper_sentence, mode_table
 from preshape.shaper import Shaper
 from preshape.workflow import Analysis
 
@@ -36,7 +36,9 @@ def calibration_screen(calibration: Calibration) -> None:
     styles = [
         "bold cyan" if one is calibration.chosen else "dim" if one.excluded else None for one in calibration.candidates
     ]
-    screen.print(_rich_table("\nCandidates, the best first", candidate_table(calibration), styles))
+    screen.print(_rich_table("\nCandidates, the best first", candidate_table(calibration), styles, left=2))
+    if exclusion_sentence(calibration):
+        screen.print(exclusion_sentence(calibration))
     screen.print()
     screen.print(Text(calibration.reason, style="bold"))
     if calibration.klipper is not None:
@@ -85,14 +87,17 @@ def analysis_screen(analysis: Analysis) -> None:
     screen.print(table)
 
 
-def _rich_table(title: str, table: TextTable, styles: list[str | None]) -> Table:
-    """A table on the terminal; the first column is left-aligned, a styled row is marked in front."""
-    drawn = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False)
-    drawn.add_column("")
+def _rich_table(title: str, table: TextTable, styles: list[str | None], left: int = 1) -> Table:
+    """A table on the terminal; the first `left` columns are left-aligned."""
+    drawn = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False, padding=(0, 1, 0, 0))
     for number, lines in enumerate(table.titles):
-        drawn.add_column("\n".join(lines), justify="left" if number == 0 else "right", no_wrap=True)
+        column = "\n".join(lines)
+        if number < left:
+            drawn.add_column(column, justify="left", no_wrap=True, min_width=1)
+        else:
+            drawn.add_column(column, justify="right", no_wrap=True)
     for row, style in zip(table.rows, styles, strict=True):
-        drawn.add_row(">" if "chosen" in row else "", *row, style=style)
+        drawn.add_row(*row, style=style)
     return drawn
 
 

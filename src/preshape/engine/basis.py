@@ -19,6 +19,9 @@ SAMPLES_PER_PERIOD = 24
 
 MAXIMUM_REFINEMENTS = 60
 
+EXACT, BRACKET = 1e-15, 1e-6
+"""Precisions of times relative to the duration: the last digit, and enough to tell neighbouring extrema apart."""
+
 
 class Basis:
     """Rows g(t) in R^m, m = 2 sum_j (q_j + 1), orthonormal over even samples of [0, duration], each of mean square one.
@@ -77,44 +80,50 @@ class Basis:
         scale = stretch**self._powers * np.exp(self._rates * (duration - self.duration))
         return tuple(complex(value) for value in (real - 1j * imaginary) * scale)
 
-    def minima(self, multipliers: NDArray[np.float64], stop: float) -> NDArray[np.float64]:
+    def minima(self, multipliers: NDArray[np.float64], stop: float, precision: float = EXACT) -> NDArray[np.float64]:
         """Times of all local minima of p = multipliers . g on [0, stop], both ends included [s].
 
         Between neighbouring roots of p'' the slope is monotone, so none of its roots is missed there; samples alone
-        would miss a minimum beside a maximum, which is what flat certificates have.
+        would miss a minimum beside a maximum, which is what flat certificates have. `precision` is that of the times,
+        relative to the duration.
         """
+        weights = [multipliers @ self._transform]
+        for _ in range(3):
+            weights.append(weights[-1] @ self._derivative)
         samples = np.linspace(0.0, stop, self.samples_needed(stop))
-        nodes = np.union1d(samples, self._roots(multipliers, 2, samples))
-        rising = multipliers @ self(nodes, 1) >= 0.0
+        rows = self.raw(samples)
+        bends = weights[2] @ rows >= 0.0
+        change = np.flatnonzero(bends[:-1] != bends[1:])
+        turning = self._refined(weights[2:], samples[change], samples[change + 1], BRACKET)
+        nodes = np.concatenate([samples, turning])
+        rising = np.concatenate([weights[1] @ rows, weights[1] @ self.raw(turning)]) >= 0.0
+        order = np.argsort(nodes, kind="stable")
+        nodes, rising = nodes[order], rising[order]
         turns = np.flatnonzero(~rising[:-1] & rising[1:])
-        inner = self._refined(multipliers, 1, nodes[turns], nodes[turns + 1])
+        inner = self._refined(weights[1:], nodes[turns], nodes[turns + 1], precision)
         return np.unique(np.concatenate([[0.0], inner, [stop]]))
 
-    def _roots(
-        self, multipliers: NDArray[np.float64], derivative: int, nodes: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
-        """The roots of a derivative of multipliers . g that lie where its sign changes between `nodes`."""
-        positive = multipliers @ self(nodes, derivative) >= 0.0
-        change = np.flatnonzero(positive[:-1] != positive[1:])
-        return self._refined(multipliers, derivative, nodes[change], nodes[change + 1])
-
     def _refined(
-        self, multipliers: NDArray[np.float64], derivative: int, low: NDArray[np.float64], high: NDArray[np.float64]
+        self,
+        weights: list[NDArray[np.float64]],
+        low: NDArray[np.float64],
+        high: NDArray[np.float64],
+        precision: float,
     ) -> NDArray[np.float64]:
-        """One root in each bracket, by Newton steps that bisection keeps inside, to the last digit of the time."""
+        """The root of weights[0] . raw in each bracket: Newton steps (slope weights[1]) that bisection keeps inside."""
         if low.size == 0:
             return low
-        sign = np.where(multipliers @ self(high, derivative) >= 0.0, 1.0, -1.0)
+        sign = np.where(weights[0] @ self.raw(high) >= 0.0, 1.0, -1.0)
         guess = 0.5 * (low + high)
         for _ in range(MAXIMUM_REFINEMENTS):
-            value = sign * (multipliers @ self(guess, derivative))
-            slope = sign * (multipliers @ self(guess, derivative + 1))
+            rows = self.raw(guess)
+            value, slope = sign * (weights[0] @ rows), sign * (weights[1] @ rows)
             low, high = np.where(value < 0.0, guess, low), np.where(value < 0.0, high, guess)
             step = guess - value / np.where(slope > 0.0, slope, np.inf)
-            inside = (step > low) & (step < high) & (slope > 0.0)
+            inside = (step >= low) & (step <= high) & (slope > 0.0)
             following = np.where(inside, step, 0.5 * (low + high))
-            settled = np.abs(following - guess) <= 4.0 * np.finfo(float).eps * self.duration
+            moved = float(np.abs(following - guess).max())
             guess = following
-            if settled.all():
+            if moved <= precision * self.duration:
                 break
         return guess

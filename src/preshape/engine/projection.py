@@ -22,6 +22,9 @@ FEASIBLE = 1e-10
 GAP = 1e-3
 """The exchange stops when p falls short of its bound by less than this fraction: Newton needs no better start."""
 
+EXCHANGED = 1e-9
+"""Precision of exchanged points relative to the duration: p is quadratic there, so its value is good to 1e-17."""
+
 SUPPORT = 1e-9
 """Weights below this are no impulses."""
 
@@ -79,7 +82,7 @@ def project(basis: Basis, times: NDArray[np.float64], gap: float = GAP) -> Proje
     for _ in range(MAXIMUM_EXCHANGES):
         if nearest.distance <= FEASIBLE:
             break
-        minima = basis.minima(nearest.multipliers, basis.duration)
+        minima = basis.minima(nearest.multipliers, basis.duration, EXCHANGED)
         lowest = float((nearest.multipliers @ basis(minima)).min())
         nearest = replace(nearest, separation=lowest)
         if lowest >= nearest.distance * (1.0 - gap):

@@ -4,7 +4,7 @@ from preshape.report.calibration import FREQUENCY_ERROR, Calibration, Candidate,
 from preshape.report.calibration_figure import calibration_figure
 from preshape.report.figures import as_png, as_svg
 from preshape.report.page import calibration_page, klipper_sentence
-from preshape.report.tables import TextTable, candidate_table, mode_table
+from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table
 
 __all__ = [
     "FREQUENCY_ERROR",
@@ -18,6 +18,7 @@ __all__ = [
     "calibration_figure",
     "calibration_page",
     "candidate_table",
+    "exclusion_sentence",
     "klipper_sentence",
     "mode_table",
 ]

@@ -26,6 +26,8 @@ class MeasuredFile:
     ----------
     name : str
         The file's name without its folder.
+    format : str
+        Its format, as the reader calls it.
     identification : Identification
         Modes, fitted curve, troubles.
     scored : PrintedSpectrum
@@ -33,6 +35,7 @@ class MeasuredFile:
     """
 
     name: str
+    format: str
     identification: Identification
     scored: PrintedSpectrum
 
@@ -44,7 +47,7 @@ class Candidate:
     Parameters
     ----------
     name : str
-        Family and, for a tuned family, its frequency: "mzv at 57.0 Hz".
+        Family and, for a tuned family, its frequency: "mzv 57.02 Hz".
     shaper : Shaper
         The impulses.
     left : float
@@ -53,15 +56,15 @@ class Candidate:
         case.
     score : KlipperScore
         By Klipper's own measures: remaining vibration [-], smoothing [mm], maximum acceleration [mm/s^2].
-    excluded : str
-        Why it may not be chosen; empty when it may.
+    excluded : bool
+        Whether the controller cannot hold it.
     """
 
     name: str
     shaper: Shaper
     left: float
     score: KlipperScore
-    excluded: str = ""
+    excluded: bool = False
 
 
 @dataclass(frozen=True)

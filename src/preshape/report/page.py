@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from preshape.report.calibration import Calibration
 from preshape.report.calibration_figure import calibration_figure
 from preshape.report.figures import as_svg
-from preshape.report.tables import TextTable, candidate_table, mode_table, time_unit
+from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table, time_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,7 +29,7 @@ p { margin: .3rem 0; }
 .tables { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { padding: .28rem .6rem; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; }
-th:first-child, td:first-child { text-align: left; }
+th:first-child, td:first-child, .candidates td:nth-child(2), .candidates th:nth-child(2) { text-align: left; }
 th { font-weight: 600; color: var(--soft); vertical-align: bottom; }
 tr.chosen td { font-weight: 700; color: var(--accent); }
 tr.excluded td { color: #8a8a8a; }
@@ -66,6 +66,7 @@ def calibration_page(calibration: Calibration, version: str, figure: Figure | No
         f'<div role="img" aria-label="{escape(_in_words(calibration), quote=True)}">{drawn}</div>',
         "<h2>Candidates, the best first</h2>",
         _candidates(calibration),
+        f"<p>{escape(exclusion_sentence(calibration))}</p>" if exclusion_sentence(calibration) else "",
         f"<p>{escape(klipper_sentence(calibration))}</p>" if calibration.klipper else "",
         "<h2>Modes</h2>",
         _modes(calibration),
@@ -95,8 +96,8 @@ def _klipper_note(calibration: Calibration) -> str:
     if calibration.klipper is None:
         return ""
     return (
-        "Klipper's measures: damping 0.075 to 0.15, 5000 mm/s², 5 mm/s through corners; smoothing and max_accel mean "
-        "something for 3D printers only."
+        "Columns from Klipper on are Klipper's own measures: damping 0.075 to 0.15, 5000 mm/s², 5 mm/s through "
+        "corners; smoothing and max_accel mean something for 3D printers only."
     )
 
 
@@ -120,7 +121,7 @@ def _candidates(calibration: Calibration) -> str:
     kinds = [
         "chosen" if one is calibration.chosen else "excluded" if one.excluded else "" for one in calibration.candidates
     ]
-    return _html_table(candidate_table(calibration), kinds)
+    return f'<div class="candidates">{_html_table(candidate_table(calibration), kinds)}</div>'
 
 
 def _modes(calibration: Calibration) -> str:

@@ -7,7 +7,10 @@ from dataclasses import dataclass
 from preshape.report.calibration import Calibration, Candidate
 from preshape.shaper import Shaper
 
-__all__ = ["TextTable", "TimeUnit", "candidate_table", "mode_table", "time_unit"]
+__all__ = ["TextTable", "TimeUnit", "candidate_table", "exclusion_sentence", "mode_table", "time_unit"]
+
+CHOSEN, EXCLUDED = ">", "x"
+"""Marks before a candidate's name."""
 
 SECONDS_FROM = 0.5
 """A shaper of this duration [s] or more is shown in seconds, a shorter one in milliseconds."""
@@ -39,9 +42,22 @@ def time_unit(shaper: Shaper) -> TimeUnit:
     return TimeUnit(1.0, "s", 3) if shaper.duration >= SECONDS_FROM else TimeUnit(1e3, "ms", 1)
 
 
+def exclusion_sentence(calibration: Calibration) -> str:
+    """What the mark of an excluded candidate means; empty when there is none."""
+    if not any(candidate.excluded for candidate in calibration.candidates):
+        return ""
+    return f"{EXCLUDED}: more than the {calibration.maximum_impulses} impulses that the controller holds."
+
+
 def mode_table(calibration: Calibration) -> TextTable:
     """Frequencies, dampings, their intervals and shares."""
-    titles = ("natural frequency [Hz]", "95 % interval", "damping ratio", "95 % interval", "share of vibration")
+    titles = (
+        ("natural", "frequency [Hz]"),
+        ("95 % interval",),
+        ("damping", "ratio"),
+        ("95 % interval",),
+        ("share of", "vibration"),
+    )
     rows = tuple(
         (
             f"{mode.mode.frequency:.4g}",
@@ -52,26 +68,29 @@ def mode_table(calibration: Calibration) -> TextTable:
         )
         for mode in calibration.modes
     )
-    return TextTable(tuple((title,) for title in titles), rows)
+    return TextTable(titles, rows)
 
 
 def candidate_table(calibration: Calibration) -> TextTable:
-    """The candidates, the best first; Klipper's measures only where they mean something."""
+    """The candidates, the best first, the choice marked; Klipper's measures only where they mean something."""
     unit = time_unit(calibration.shaper)
     titles: list[tuple[str, ...]] = [
+        ("",),
         ("shaper",),
         ("impulses",),
         ("duration", f"[{unit.name}]"),
-        ("vibration left", "at 5 % error [%]"),
+        ("vibration", "left [%]"),
     ]
     if calibration.klipper is not None:
-        titles += [("by Klipper's", "measure [%]"), ("smoothing", "[mm]"), ("max_accel", "[mm/s²]")]
+        titles += [("Klipper", "[%]"), ("smooth-", "ing [mm]"), ("max_accel", "[mm/s²]")]
     rows = tuple(_cells(calibration, candidate, unit) for candidate in calibration.candidates)
-    return TextTable((*titles, ("",)), rows)
+    return TextTable(tuple(titles), rows)
 
 
 def _cells(calibration: Calibration, candidate: Candidate, unit: TimeUnit) -> tuple[str, ...]:
+    mark = CHOSEN if candidate is calibration.chosen else EXCLUDED if candidate.excluded else ""
     cells = [
+        mark,
         candidate.name,
         f"{len(candidate.shaper)}",
         f"{unit.per_second * candidate.shaper.duration:.{unit.decimals}f}",
@@ -84,5 +103,4 @@ def _cells(calibration: Calibration, candidate: Candidate, unit: TimeUnit) -> tu
             f"{score.smoothing:.3f}",
             f"{score.maximum_acceleration:.0f}",
         ]
-    note = "chosen" if candidate is calibration.chosen else candidate.excluded
-    return (*cells, note)
+    return tuple(cells)

@@ -22,6 +22,9 @@ from preshape.workflow.spectra import scored_spectrum
 
 __all__ = ["calibrate"]
 
+PRINTERS = ("Klipper", "RepRapFirmware")
+"""Formats that come from 3D printers begin with these words."""
+
 KLIPPER_RANGE = (10.0, 200.0)
 """Frequencies [Hz] at which Klipper looks for resonances: below it fades the spectrum out, above it looks away."""
 
@@ -77,7 +80,7 @@ def calibrate(
     measured = tuple(_measured(Path(path), damping, sample_rate) for path in paths)
     modes = merged_modes([file.identification for file in measured])
     spectra = klipper.as_spectra([(file.scored.frequencies, file.scored.power) for file in measured])
-    stock = klipper.recommend(spectra).chosen if _in_klipper_s_range(spectra) else None
+    stock = klipper.recommend(spectra).chosen if _klipper_applies(measured) else None
     clear = all(file.identification.clear for file in measured)
     candidates = ranked(
         designed_candidates(
@@ -114,13 +117,14 @@ def calibrate(
     )
 
 
-def _in_klipper_s_range(spectra: tuple[klipper.Spectrum, ...]) -> bool:
-    """Whether Klipper could shape the loudest vibration: its measures would only mislead for a crane."""
-    loudest = [float(spectrum.frequencies[np.argmax(spectrum.psd)]) for spectrum in spectra]
-    return min(loudest) >= KLIPPER_RANGE[0] and max(loudest) <= KLIPPER_RANGE[1]
+def _klipper_applies(files: tuple[MeasuredFile, ...]) -> bool:
+    """Whether these are from a printer, or vibrate where Klipper looks: for a crane its measures would only mislead."""
+    loudest = [float(file.scored.frequencies[np.argmax(row)]) for file in files for row in file.scored.power]
+    printer = any(file.format.startswith(PRINTERS) for file in files)
+    return printer or (min(loudest) >= KLIPPER_RANGE[0] and max(loudest) <= KLIPPER_RANGE[1])
 
 
 def _measured(path: Path, damping: float | None, sample_rate: float | None) -> MeasuredFile:
     measurement = identify.read(path, sample_rate=sample_rate)
     identification = identify.find_modes(measurement, damping=damping)
-    return MeasuredFile(path.name, identification, scored_spectrum(measurement, identification))
+    return MeasuredFile(path.name, measurement.format, identification, scored_spectrum(measurement, identification))

@@ -79,13 +79,12 @@ def designed_candidates(
     ratio = damping if damping is not None else modes[0].mode.damping if modes else DEFAULT_DAMPING
 
     def candidate(name: str, shaper: Shaper) -> Candidate:
-        too_many = maximum_impulses is not None and len(shaper) > maximum_impulses
         return Candidate(
             name=name,
             shaper=shaper,
             left=remaining_amplitude(shaper, lines),
             score=klipper.score(shaper, spectra),
-            excluded=f"more than {maximum_impulses} impulses" if too_many else "",
+            excluded=maximum_impulses is not None and len(shaper) > maximum_impulses,
         )
 
     grid = _search_grid(lines, clear)
@@ -95,9 +94,9 @@ def designed_candidates(
         except InputError:
             continue
         frequency = _tuned(remaining_amplitudes(unit, lines, grid), grid, tolerance)
-        yield candidate(f"{name} at {frequency:.4g} Hz", family(Mode(frequency, ratio)))
+        yield candidate(f"{name} {frequency:.4g} Hz", family(Mode(frequency, ratio)))
     if stock is not None:
-        yield candidate(f"Klipper's {stock.name} at {stock.frequency:.1f} Hz", stock.shaper)
+        yield candidate(f"Klipper {stock.name} {stock.frequency:.1f} Hz", stock.shaper)
     if len(modes) > 1:
         wanted = Modes([mode.mode for mode in modes])
         for name, family_of_several in SEVERAL.items():

@@ -21,9 +21,9 @@ def ranked(candidates: Iterable[Candidate], tolerance: float, clear: bool) -> tu
     def rank(candidate: Candidate) -> tuple[bool, bool, float]:
         smoothing = candidate.score.smoothing
         if not clear:
-            return bool(candidate.excluded), False, klipper.combined(candidate.left, smoothing)
+            return candidate.excluded, False, klipper.combined(candidate.left, smoothing)
         enough = candidate.left <= tolerance
-        return bool(candidate.excluded), not enough, smoothing if enough else candidate.left
+        return candidate.excluded, not enough, smoothing if enough else candidate.left
 
     return tuple(sorted(candidates, key=rank))
 
@@ -33,7 +33,7 @@ def choose(candidates: tuple[Candidate, ...], tolerance: float, clear: bool) -> 
     best = candidates[0]
     if best.excluded:
         fewest = min(len(candidate.shaper) for candidate in candidates)
-        raise InputError(f"every shaper has {best.excluded}: the shortest needs {fewest}; raise --max-impulses.")
+        raise InputError(f"no candidate has so few impulses: the smallest has {fewest}; raise --max-impulses to it.")
     left = f"{100.0 * best.left:.1f} % of the vibration with all frequencies {100.0 * FREQUENCY_ERROR:g} % off"
     if not clear:
         return best, (
