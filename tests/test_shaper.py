@@ -55,6 +55,19 @@ def test_coincident_impulses_merge_and_near_ones_do_not() -> None:
     assert len(Shaper([0.0, 0.1], [0.5, 0.5]) * Shaper([0.0, 0.1 + 1e-7], [0.5, 0.5])) == 4
 
 
+def test_times_that_differ_by_rounding_are_one() -> None:
+    first, second = Shaper([0.0, 0.1, 0.3], [0.25, 0.25, 0.5]), Shaper([0.0, 0.2], [0.5, 0.5])
+    assert 0.1 + 0.2 != 0.3
+    assert len(first * second) == 5
+
+
+def test_merging_keeps_the_centroid() -> None:
+    times, weights = [0.0, 0.5, 0.5 + 4e-10, 1.0], [0.25, 0.25, 0.25, 0.25]
+    merged = Shaper.normalised(times, weights)
+    assert len(merged) == 3
+    assert merged.centroid == pytest.approx(float(np.dot(times, weights)), abs=1e-15)
+
+
 def test_merging_a_vanishing_impulse_does_not_lose_its_time() -> None:
     assert Shaper.normalised([0.0, 0.001], [1.0, 5e-324]).duration == 0.001
 

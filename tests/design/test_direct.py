@@ -58,6 +58,7 @@ def test_the_certificate_excludes_everything_shorter(modes: list[tuple[float, fl
     p = certificate.polynomial(times)
     assert p.min() >= -1e-9 * np.abs(p).max()
     assert np.abs(certificate.polynomial(shaper.times)).max() < 1e-9 * np.abs(p).max()
+    np.testing.assert_allclose(certificate.contacts, shaper.times, atol=1e-6 * shaper.duration)
     rows = constraint_rows(Modes(modes), 1, times)
     remainder = p - np.linalg.lstsq(rows.T, p, rcond=None)[0] @ rows
     assert np.abs(remainder).max() < 1e-9 * np.abs(p).max()
@@ -139,6 +140,13 @@ def test_what_cannot_be_proved_is_called_feasible_and_still_meets_the_modes() ->
     assert shaper.design.status == "feasible"
     assert shaper.design.certificate is None
     assert 0.0 < shaper.design.settings["gap"] < 0.01
+    assert shaper.design.residual < 1e-12
+
+
+def test_near_modes_with_many_derivatives_still_leave_nothing() -> None:
+    """The constraint rows have a condition of 1e8 here; the residual must not show it."""
+    shaper = design.direct(TABLE[-1][1], order=2)
+    assert shaper.design.status == "optimal"
     assert shaper.design.residual < 1e-12
 
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from preshape import Modes
+from preshape import Modes, design
 from preshape.engine.basis import Basis
-from preshape.engine.projection import nearest_on, project
+from preshape.engine.newton import Polished
+from preshape.engine.projection import Projection, nearest_on, project
 
 MODES = Modes([(1.0, 0.05), (2.3, 0.0)])
 
@@ -87,3 +90,27 @@ def test_certificate_coefficients_are_the_combination_in_plain_exponentials() ->
             plain += np.real(coefficients[position] * wave)
             position += 1
     np.testing.assert_allclose(plain, c @ basis(times), atol=1e-12)
+
+
+def test_only_what_is_proved_counts() -> None:
+    """Each link of the chain refuses what it must refuse."""
+    nothing = np.zeros(2)
+    assert Projection(nothing, nothing, distance=0.1, multipliers=nothing, separation=0.05).infeasible
+    assert not Projection(nothing, nothing, distance=0.1, multipliers=nothing, separation=-0.05).infeasible
+    assert not Projection(nothing, nothing, distance=1e-12, multipliers=nothing, separation=0.05).infeasible
+    assert Polished(nothing, np.array([0.5, 0.5]), nothing, error=1.0).converged
+    assert not Polished(nothing, np.array([1.1, -0.1]), nothing, error=1.0).converged
+    assert not Polished(nothing, np.array([0.5, 0.5]), nothing, error=1e6).converged
+    proof = design.direct([(1.0, 0.0), (2.3, 0.0)]).design.certificate
+    assert proof is not None and proof.holds
+    assert not replace(proof, minimum=-1e-6).holds
+    assert not replace(proof, exclusion=0.0).holds
+
+
+def test_contacts_that_could_do_it_earlier_are_found_out() -> None:
+    """On an interval longer than needed the impulses before its end meet the constraints: no exclusion there."""
+    shaper = design.direct([(1.0, 0.05), (2.3, 0.0)])
+    longer = Basis(MODES, (1, 1), 1.2 * shaper.duration)
+    assert nearest_on(longer, shaper.times).distance < 1e-10
+    exact = Basis(MODES, (1, 1), shaper.duration)
+    assert nearest_on(exact, shaper.times[:-1]).distance > 1e-3

@@ -85,6 +85,14 @@ def test_a_mode_outside_the_tolerance_has_no_band_and_an_open_band_is_infinite()
     assert insensitivity(heavy, (1.0, 0.3), 0.2).value == math.inf
 
 
+def test_a_hump_a_little_too_high_breaks_the_band() -> None:
+    shaper = design.ei((1.0, 0.1), 0.05)
+    assert insensitivity(shaper, (1.0, 0.1), 0.05).value > 0.4
+    assert insensitivity(shaper, (1.0, 0.1), 0.04999).value == 0.0
+    beside = insensitivity(shaper, (0.85, 0.1), 0.04999)
+    assert 0.0 < beside.value < 0.3 and beside.high < 1.0
+
+
 def test_total_insensitivity_is_the_area_of_a_fine_map() -> None:
     shaper = design.zvd((10.0, 0.05))
     area = total_insensitivity(shaper, (10.0, 0.05), 0.05)
