@@ -12,6 +12,7 @@ import pytest
 
 from preshape import Shaper, design
 from preshape.cli.main import main
+from preshape.vibration import total_insensitivity
 
 
 def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
@@ -115,6 +116,7 @@ def test_analyze_shows_the_measures_of_a_shaper_file(tmp_path: Path, capsys: pyt
     code, out, _ = run(capsys, "analyze", str(path))
     assert code == 0
     assert "0.2871" in out and "8.564 - 11.44" in out
+    assert f"{total_insensitivity(design.zvd((10.0, 0.0)), (10.0, 0.0)):.4f}" in out
     code, out, _ = run(capsys, "analyze", str(path), "--mode", "12:0.1", "--tolerance", "0.2")
     assert code == 0 and "12 Hz, damping 0.1" in out
     given = tmp_path / "given.json"

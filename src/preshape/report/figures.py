@@ -49,7 +49,10 @@ def as_png(figure: Figure, dots_per_inch: int = 120) -> bytes:
 
 def as_svg(figure: Figure) -> str:
     """The figure as one <svg> element, the same bytes for the same figure."""
+    from matplotlib import rc_context
+
     buffer = io.StringIO()
-    figure.savefig(buffer, format="svg", metadata={"Date": None})
+    with rc_context({"svg.hashsalt": "preshape"}):
+        figure.savefig(buffer, format="svg", metadata={"Date": None})
     text = buffer.getvalue()
     return text[text.index("<svg") :]
