@@ -38,6 +38,7 @@ BAD = {
     "raw, uneven columns": (RAW + RAW_ROWS.replace("7.000000,2", "7.0,1.0,2", 1), "line 9 has 5 columns"),
     "raw, repeated time": (RAW + RAW_ROWS.replace("0.007000", "0.006000", 1), "time repeats.*line 9"),
     "raw, unsorted time": (RAW + RAW_ROWS.replace("0.007000", "0.001000", 1), "time goes back.*line 9"),
+    "raw, absurd": (RAW + RAW_ROWS.replace("7.000000,2", "1e300,2", 1), "above 1e[+]100, which no sensor gives"),
     "spectrum, word": (PSD + PSD_ROWS.replace("16.0", "abc", 1), "line 12 holds 'abc'"),
     "spectrum, nan": (PSD + PSD_ROWS.replace("16.0,1.000e+00", "16.0,nan", 1), "line 12 holds 'nan'"),
     "spectrum, repeated": (PSD + PSD_ROWS.replace("16.0", "14.4", 1), "frequency repeats"),

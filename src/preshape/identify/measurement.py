@@ -13,6 +13,10 @@ from preshape.errors import InputError
 __all__ = ["Measurement", "PrintedSpectrum", "Spectrum", "TimeSeries"]
 
 
+LARGEST_VALUE = 1e100
+"""Larger magnitudes are no measurement, and their squares would overflow."""
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class TimeSeries:
     """Vibration over time, uniformly sampled.
@@ -172,5 +176,7 @@ def _checked(array: NDArray[np.float64], channels: tuple[str, ...], name: str, a
         )
     if not np.all(np.isfinite(checked)):
         raise InputError(f"{name} hold NaN or infinity: give finite numbers only.")
+    if float(np.abs(checked).max()) > LARGEST_VALUE:
+        raise InputError(f"{name} hold numbers above {LARGEST_VALUE:g}, which no sensor gives: check the unit.")
     checked.flags.writeable = False
     return checked

@@ -75,7 +75,12 @@ def read(path: str | os.PathLike[str], *, sample_rate: float | None = None) -> M
                 raise MeasurementError(
                     f"{source}: the file has only one line; a measurement needs many, record it again."
                 )
-            return reader.read(lines, source, sample_rate)
+            try:
+                return reader.read(lines, source, sample_rate)
+            except MeasurementError:
+                raise
+            except InputError as error:  # what a measurement refuses, said of the file
+                raise MeasurementError(f"{source}: {error}") from None
     if sum(1 for line in lines if line.strip()) < 2:
         raise MeasurementError(f"{source}: the file has only one line; a measurement needs many, record it again.")
     known = ", ".join(reader.FORMAT for reader in READERS)
