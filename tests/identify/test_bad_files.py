@@ -56,6 +56,7 @@ BAD = {
     "capture, unsorted": (RRF + RRF_ROWS.replace("\n7,", "\n3,", 1) + "Rate 9, overflows 0", "goes back"),
     "capture, no axis": ("Sample\n0\n1\n", "no axis column"),
     "table, no time": ("a,b\n1,2\n3,4\n", "no column is named 'time'"),
+    "table, lone hash": ("#\na,b\n1,2\n3,4\n", "no column is named 'time'"),
     "table, only time": ("time\n1\n2\n", "besides the time"),
     "table, uneven": ("time,x\n0,1\n1,1\n2,1\n3,1\n9,1\n", "from 1 s to 6 s.*line 6.*mean of 2.25 s"),
     "table, word": ("time,x\n0,1\n1,two\n2,3\n", "line 3 holds 'two'"),

@@ -86,7 +86,8 @@ def _first_data_line(lines: list[str]) -> int:
     """Index of the first line that is neither blank nor a comment; a `#time` header is no comment."""
     for index, line in enumerate(lines):
         stripped = line.strip()
-        if stripped and (not stripped.startswith("#") or _TIME.match(cells(stripped[1:], _delimiter(stripped))[0])):
+        named = cells(stripped[1:], _delimiter(stripped)) if stripped.startswith("#") else []
+        if stripped and (not stripped.startswith("#") or (named and _TIME.match(named[0]))):
             return index
     return len(lines) - 1
 
