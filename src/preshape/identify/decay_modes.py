@@ -85,10 +85,11 @@ def ring_down(time_series: TimeSeries, *, damping: float | None = None, maximum:
     Notes
     -----
     On decaying cosines 40 dB above white noise, frequencies are right within 0.2 % and damping ratios within 3 % for
-    damping ratios of 0.005 to 0.1, one mode or two that are 25 % apart. It fails on records shorter than about two
-    periods; at a damping ratio of 0.15 two modes, or one sampled below 1 kHz, have frequency errors up to 0.5 %
-    (errors are within 25 % of the Cramer-Rao bound, which no unbiased estimate beats); modes closer than z f / 2 merge; a mode with less than 2 % of the energy is left out; at
-    10 dB most modes with a damping ratio of 0.05 or more are lost.
+    damping ratios of 0.005 to 0.1, one mode or two that are 25 % apart; errors are within 25 % of the Cramer-Rao bound,
+    which no unbiased estimate beats. At a damping ratio of 0.15 that bound lets frequency errors reach 0.5 % for two
+    modes, or one sampled below 1 kHz. It fails on records shorter than about two periods; modes closer than z f / 2
+    merge; a mode with less than 2 % of the energy is left out; at 10 dB most modes with a damping ratio of 0.05 or more
+    are lost.
 
     References
     ----------
