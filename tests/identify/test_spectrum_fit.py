@@ -172,3 +172,19 @@ def test_undamped_wish_is_kept():
     found = find_modes(spectrum(swept_machine([(48.0, 0.02)], [1.0], np.random.default_rng(7))), damping=0.0)
     assert found.modes[0].mode.damping == 0.0
     assert found.modes[0].mode.frequency == pytest.approx(48.0, rel=0.02)
+
+
+def test_prominent_peaks_are_scipy_s():
+    from scipy.signal import find_peaks
+
+    from preshape.identify.spectrum_modes import _prominent
+
+    rng = np.random.default_rng(11)
+    for _ in range(300):
+        curve = np.cumsum(rng.normal(size=60)) if rng.random() < 0.5 else rng.normal(size=60)
+        edged = np.concatenate([[curve.min() - 1.0], curve, [curve.min() - 1.0]])
+        for least in (0.2, 1.0):
+            expected = [p for p in find_peaks(edged, prominence=least)[0] - 1]
+            found = _prominent(curve, least).tolist()
+            # At the edges of the band ours counts as standing out without end, as nothing is known beyond.
+            assert [p for p in found if 0 < p < 59] == [p for p in expected if 0 < p < 59]

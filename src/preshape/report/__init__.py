@@ -2,7 +2,7 @@
 
 from preshape.report.calibration import FREQUENCY_ERROR, Calibration, Candidate, MeasuredFile, SimulatedMove
 from preshape.report.calibration_figure import calibration_figure
-from preshape.report.figures import as_png, as_svg
+from preshape.report.figures import as_svg
 from preshape.report.page import calibration_page, klipper_sentence
 from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table
 
@@ -13,7 +13,6 @@ __all__ = [
     "MeasuredFile",
     "SimulatedMove",
     "TextTable",
-    "as_png",
     "as_svg",
     "calibration_figure",
     "calibration_page",

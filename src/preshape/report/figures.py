@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["ACCENT", "INK", "MUTED", "SECOND", "SOFT", "as_png", "as_svg", "new_figure", "tidy"]
+__all__ = ["ACCENT", "INK", "MUTED", "SECOND", "SOFT", "as_svg", "new_figure", "tidy"]
 
 INK = "#1a1a1a"
 ACCENT = "#0b5fa5"
@@ -39,16 +39,8 @@ def tidy(axes: Axes, x_label: str, y_label: str, title: str) -> None:
         axes.spines[side].set_visible(False)
 
 
-def as_png(figure: Figure, dots_per_inch: int = 120) -> bytes:
-    """The figure as PNG bytes; its layout is settled by this, so that a second rendering need not find it again."""
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=dots_per_inch)
-    figure.set_layout_engine("none")
-    return buffer.getvalue()
-
-
 def as_svg(figure: Figure) -> str:
-    """The figure as one <svg> element, the same bytes for the same figure."""
+    """The figure as one <svg> element, a file by itself; the same bytes for the same figure."""
     from matplotlib import rc_context
 
     buffer = io.StringIO()

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from html import escape
-from typing import TYPE_CHECKING
 
 from preshape.report.calibration import Calibration
 from preshape.report.calibration_figure import calibration_figure
 from preshape.report.figures import as_svg
 from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table, time_unit
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 __all__ = ["calibration_page", "klipper_sentence"]
 
@@ -40,7 +36,7 @@ footer { color: var(--soft); font-size: .85rem; margin-top: 1.2rem; border-top: 
 """
 
 
-def calibration_page(calibration: Calibration, version: str, figure: Figure | None = None) -> str:
+def calibration_page(calibration: Calibration, version: str, figure: str | None = None) -> str:
     """The report as HTML text.
 
     Parameters
@@ -49,11 +45,11 @@ def calibration_page(calibration: Calibration, version: str, figure: Figure | No
         From :func:`preshape.workflow.calibrate`.
     version : str
         Of preshape, for the foot of the page.
-    figure : matplotlib Figure, optional
-        From :func:`calibration_figure`, when it has been drawn already.
+    figure : str, optional
+        The figure as :func:`as_svg` gives it, when it has been drawn already.
     """
     names = ", ".join(file.name for file in calibration.files)
-    drawn = as_svg(calibration_figure(calibration) if figure is None else figure)
+    drawn = as_svg(calibration_figure(calibration)) if figure is None else figure
     parts = [
         "<!doctype html>",
         '<html lang="en"><head><meta charset="utf-8">',

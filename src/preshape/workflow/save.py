@@ -9,7 +9,7 @@ from pathlib import Path
 
 from preshape.errors import InputError
 from preshape.files import write_atomically
-from preshape.report import Calibration, as_png, calibration_figure, calibration_page
+from preshape.report import Calibration, as_svg, calibration_figure, calibration_page
 
 __all__ = ["SavedCalibration", "save_calibration"]
 
@@ -21,7 +21,7 @@ class SavedCalibration:
     Parameters
     ----------
     shaper, figure, report : Path
-        shaper.json, calibration.png, report.html.
+        shaper.json, calibration.svg, report.html.
     """
 
     shaper: Path
@@ -46,11 +46,10 @@ def save_calibration(calibration: Calibration, folder: str | os.PathLike[str]) -
         raise InputError(
             f"cannot make the folder {target}: {error.strerror or error}; choose another with --out."
         ) from error
-    drawn = calibration_figure(calibration)
-    figure = as_png(drawn)
-    page = calibration_page(calibration, version("preshape"), drawn)
+    figure = as_svg(calibration_figure(calibration))
+    page = calibration_page(calibration, version("preshape"), figure)
     return SavedCalibration(
         shaper=calibration.shaper.save(target / "shaper.json"),
-        figure=write_atomically(target / "calibration.png", figure),
+        figure=write_atomically(target / "calibration.svg", figure),
         report=write_atomically(target / "report.html", page),
     )
