@@ -25,6 +25,9 @@ __all__ = ["Certificate", "Design"]
 MINIMUM_ALLOWED = -1e-9
 """How far below zero p may reach, relative to its maximum, before the certificate is rejected (rounding only)."""
 
+TOUCHING = 1e-7
+"""p is zero where it is below this fraction of its maximum."""
+
 EXCLUDED_AT = 1e-6
 """Least-squares distance [-] above which the contact points before T count as unable to satisfy the constraints."""
 
@@ -73,6 +76,25 @@ class Certificate:
     def holds(self) -> bool:
         """Whether both parts of the argument hold within rounding."""
         return self.minimum >= MINIMUM_ALLOWED and self.exclusion > EXCLUDED_AT
+
+    def confirms(self, times: ArrayLike) -> bool:
+        """Whether the stored polynomial itself bears out that a shaper with impulses at `times` [s] is shortest.
+
+        Recomputed from the coefficients, so that a certificate from a file need not be believed: p stays above zero
+        on a grid of 48 points a period of the fastest mode, touches zero at every impulse, and the last one is at T.
+        """
+        impulses = np.asarray(times, dtype=float)
+        fastest = max(mode.frequency for mode in self.modes)
+        grid = np.linspace(0.0, self.duration, int(48 * fastest * self.duration) + 200)
+        p = self.polynomial(grid)
+        largest = float(np.abs(p).max())
+        return bool(
+            self.holds
+            and largest > 0.0
+            and p.min() >= MINIMUM_ALLOWED * largest
+            and np.abs(self.polynomial(impulses)).max() <= TOUCHING * largest
+            and abs(impulses[-1] - self.duration) <= TOUCHING * self.duration
+        )
 
     def polynomial(self, times: ArrayLike) -> NDArray[np.float64]:
         """p at `times` [s], any shape; the values have the same shape and no unit.

@@ -125,6 +125,19 @@ def test_analyze_shows_the_measures_of_a_shaper_file(tmp_path: Path, capsys: pyt
     assert code == 2 and "--mode F:Z" in err
 
 
+def test_analyze_does_not_believe_a_certificate_that_does_not_hold(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = design.direct([(1.0, 0.0), (2.3, 0.0)]).to_dict()
+    path = tmp_path / "direct.json"
+    path.write_text(json.dumps(data))
+    assert "proved shortest" in run(capsys, "analyze", str(path))[1]
+    data["design"]["certificate"]["coefficients"][0][0] += 0.1
+    path.write_text(json.dumps(data))
+    out = run(capsys, "analyze", str(path))[1]
+    assert "proved shortest" not in out and "does not hold" in out
+
+
 def test_shape_shapes_every_column_from_rest_at_the_first_row(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

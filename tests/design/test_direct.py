@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -89,6 +91,19 @@ def test_an_independent_solver_finds_nothing_shorter_and_something_slightly_long
         misses[factor] = answer.fun
     assert misses[0.995] > 1e-3
     assert misses[1.005] < 1e-8
+
+
+def test_a_certificate_from_elsewhere_is_checked_not_believed() -> None:
+    shaper, other = design.direct(TABLE[2][1]), design.direct(TABLE[1][1])
+    proof = shaper.design.certificate
+    assert proof is not None and proof.confirms(shaper.times)
+    flipped = replace(proof, coefficients=tuple(-value for value in proof.coefficients))
+    assert not flipped.confirms(shaper.times)
+    bent = replace(proof, coefficients=(proof.coefficients[0] + 0.01, *proof.coefficients[1:]))
+    assert not bent.confirms(shaper.times)
+    assert not replace(proof, coefficients=tuple(0j for _ in proof.coefficients)).confirms(shaper.times)
+    assert not proof.confirms(other.times * shaper.duration / other.duration)
+    assert not proof.confirms(design.zvd(TABLE[2][1]).times)
 
 
 def test_one_mode_gives_the_closed_forms() -> None:

@@ -57,7 +57,10 @@ def shaper_screen(shaper: Shaper) -> None:
         names = "; ".join(str(mode) for mode in design.modes)
         screen.print(f"largest residual vibration at {names}: {100.0 * design.residual:.3g} %")
     if design.certificate is not None:
-        screen.print("proved shortest: no positive shaper with these constraints is shorter (certificate in the JSON)")
+        if design.certificate.confirms(shaper.times):
+            screen.print("proved shortest: no positive shaper with these constraints is shorter (certificate checked)")
+        else:
+            screen.print(Text("the certificate in this file does not hold: it proves nothing", style="bold yellow"))
     elif "gap" in design.settings:
         screen.print(f"not proved shortest: a shorter one could save at most {100.0 * design.settings['gap']:.2g} %")
 
