@@ -16,7 +16,7 @@ from preshape.engine.basis import Basis
 
 __all__ = ["Polished", "polish"]
 
-ACCEPTED = 100.0
+ACCEPTED = 10.0
 """An equation error of up to this many times the basis' rounding level counts as zero."""
 
 NOTHING = 1e-12

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from preshape.engine.basis import Basis
 from preshape.engine.newton import Polished, polish
 from preshape.engine.projection import FEASIBLE, Projection, nearest_on, project
+from preshape.engine.unresolved import convolved_positive, is_resolved, with_fewer_constraints
 from preshape.mode import Modes
 from preshape.provenance import Certificate
 
@@ -67,6 +68,8 @@ def shortest_positive(modes: Modes, orders: tuple[int, ...]) -> Shortest:
         Derivatives of the residual that vanish with it, at each mode (0: ZV, 1: ZVD ...).
     """
     convolved = sum((order + 1) * mode.damped_period / 2.0 for mode, order in zip(modes, orders, strict=True))
+    if not is_resolved(modes, orders, convolved):
+        return _unresolved(modes, orders)
     fastest = max(mode.frequency for mode in modes)
     mesh = np.linspace(0.0, 1.0, int(np.ceil(MESH_PER_PERIOD * fastest * convolved)) + 2)
     too_short, enough = _bisect(modes, orders, mesh, convolved)
@@ -167,4 +170,15 @@ def _feasible(
     """What is left when Newton does not confirm: a shaper that meets the constraints, and how short it might be."""
     nearest = nearest_on(Basis(modes, orders, enough), points * enough)
     times = nearest.times - nearest.times[0]
+    convolved = convolved_positive(modes, orders)
+    if times[-1] >= convolved.duration:
+        return Shortest(convolved.times, convolved.amplitudes, None, 1.0 - too_short / convolved.duration)
     return Shortest(times, nearest.amplitudes, None, float(1.0 - too_short / times[-1]))
+
+
+def _unresolved(modes: Modes, orders: tuple[int, ...]) -> Shortest:
+    """The convolved shaper, and the bound that fewer constraints give, when the modes are too near to search."""
+    convolved = convolved_positive(modes, orders)
+    bound = shortest_positive(*with_fewer_constraints(modes, orders))
+    lower = float(bound.times[-1]) * (1.0 - bound.gap)
+    return Shortest(convolved.times, convolved.amplitudes, None, max(0.0, 1.0 - lower / convolved.duration))
