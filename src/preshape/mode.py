@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from numbers import Real
-from typing import TypeAlias, overload
+from typing import TypeAlias, cast, overload
 
 from preshape.errors import InputError
 
@@ -171,7 +171,7 @@ def _each_mode(modes: ModesLike) -> Iterator[Mode]:
     if isinstance(modes, Mode):
         yield modes
     elif isinstance(modes, tuple) and len(modes) == 2 and all(isinstance(value, Real) for value in modes):
-        yield Mode(float(modes[0]), float(modes[1]))  # type: ignore[arg-type]
+        yield Mode(*cast("tuple[float, float]", modes))
     elif isinstance(modes, str | bytes) or not isinstance(modes, Iterable):
         raise InputError(
             f"{modes!r} is not a mode: give Mode(frequency, damping) or a pair (frequency [Hz], damping), "

@@ -6,13 +6,10 @@ Amplitudes are the binomial coefficients times K^i, divided by (1 + K)^n, with K
 
 from __future__ import annotations
 
-import math
-
-import numpy as np
-
 from preshape.checks import whole_number
 from preshape.design.each_mode import convolve_each
-from preshape.mode import Mode, ModesLike
+from preshape.engine import convolved_positive
+from preshape.mode import Mode, Modes, ModesLike
 from preshape.shaper import Shaper
 
 __all__ = ["zv", "zvd", "zvdd", "zvdk"]
@@ -38,17 +35,17 @@ def zv(modes: ModesLike) -> Shaper:
     >>> zv((10.0, 0.0)).times.tolist()
     [0.0, 0.05]
     """
-    return convolve_each(modes, "zv", lambda mode: _binomial(mode, 1))
+    return convolve_each(modes, "zv", lambda mode: _binomial(mode, 0))
 
 
 def zvd(modes: ModesLike) -> Shaper:
     """Zero vibration and derivative: three impulses a mode; modes as for :func:`zv`."""
-    return convolve_each(modes, "zvd", lambda mode: _binomial(mode, 2))
+    return convolve_each(modes, "zvd", lambda mode: _binomial(mode, 1))
 
 
 def zvdd(modes: ModesLike) -> Shaper:
     """Zero vibration and two derivatives: four impulses a mode; modes as for :func:`zv`."""
-    return convolve_each(modes, "zvdd", lambda mode: _binomial(mode, 3))
+    return convolve_each(modes, "zvdd", lambda mode: _binomial(mode, 2))
 
 
 def zvdk(modes: ModesLike, order: int) -> Shaper:
@@ -60,11 +57,8 @@ def zvdk(modes: ModesLike, order: int) -> Shaper:
     6
     """
     k = whole_number("order", order, 0, HIGHEST_ORDER)
-    return convolve_each(modes, "zvdk", lambda mode: _binomial(mode, k + 1), {"order": k})
+    return convolve_each(modes, "zvdk", lambda mode: _binomial(mode, k), {"order": k})
 
 
-def _binomial(mode: Mode, steps: int) -> Shaper:
-    """(1 + K q)^steps / (1 + K)^steps, q a delay of half a damped period."""
-    k = np.arange(steps + 1)
-    weights = np.array([math.comb(steps, int(i)) for i in k]) * mode.decay_per_half_period**k
-    return Shaper(k * mode.damped_period / 2.0, weights / weights.sum())
+def _binomial(mode: Mode, order: int) -> Shaper:
+    return convolved_positive(Modes(mode), (order,))
