@@ -64,4 +64,4 @@ def test_modes_are_an_immutable_sequence() -> None:
     assert modes[1:] == Modes((1.0, 0.0))
     assert hash(modes) == hash(Modes([Mode(2.0, 0.1), Mode(1.0)]))
     with pytest.raises(TypeError):
-        modes[0] = Mode(1.0)  # type: ignore[index]
+        modes[0] = Mode(1.0)

@@ -145,7 +145,7 @@ def test_a_shaper_cannot_be_changed() -> None:
     with pytest.raises(ValueError, match="read-only"):
         shaper.times[0] = 3.0
     with pytest.raises(AttributeError):
-        shaper.times = np.zeros(2)  # type: ignore[misc]
+        shaper.times = np.zeros(2)
 
 
 @pytest.mark.parametrize(

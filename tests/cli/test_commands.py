@@ -149,7 +149,7 @@ def test_shape_shapes_every_column_from_rest_at_the_first_row(
     out = tmp_path / "shaped.csv"
     code, text, _ = run(capsys, "shape", str(tmp_path / "zv.json"), str(tmp_path / "command.csv"), "--out", str(out))
     assert code == 0 and "40 samples became 45" in text
-    assert out.read_text().splitlines()[0].startswith("time,x")
+    assert out.read_text().splitlines()[0] == "time [s],x [mm],y [mm]"
     table = np.loadtxt(out, delimiter=",", skiprows=1)
     np.testing.assert_allclose(table[:, 0], 0.01 * np.arange(45), atol=1e-9)
     np.testing.assert_allclose(table[:, 1], shaper.shape(x, 0.01, initial=x[0]), atol=1e-9)

@@ -80,6 +80,13 @@ class Basis:
         scale = stretch**self._powers * np.exp(self._rates * (duration - self.duration))
         return tuple(complex(value) for value in (real - 1j * imaginary) * scale)
 
+    def multipliers(self, coefficients: NDArray[np.complex128]) -> NDArray[np.float64]:
+        """The inverse of :meth:`coefficients` for T = this basis' duration, scaled to length one; zeros stay zeros."""
+        plain = np.concatenate([coefficients.real, -coefficients.imag])
+        found = np.linalg.solve(self._transform.T, plain)
+        length = float(np.linalg.norm(found))
+        return found / length if length > 0.0 else found
+
     def minima(self, multipliers: NDArray[np.float64], stop: float, precision: float = EXACT) -> NDArray[np.float64]:
         """Times of all local minima of p = multipliers . g on [0, stop], both ends included [s].
 

@@ -17,7 +17,7 @@ from preshape.engine.newton import Polished, polish
 from preshape.engine.projection import FEASIBLE, Projection, nearest_on, project
 from preshape.engine.unresolved import convolved_positive, is_resolved, with_fewer_constraints
 from preshape.mode import Modes
-from preshape.provenance import Certificate
+from preshape.provenance import TOUCHING, Certificate
 
 __all__ = ["Shortest", "shortest_positive"]
 
@@ -32,9 +32,6 @@ BELOW = (1e-3, 1e-4, 1e-5, 1e-6)
 
 SAME_IMPULSE = 0.5
 """Support points closer than this many mesh steps are one impulse that lies between them."""
-
-CONTACT = 1e-7
-"""The certificate's polynomial touches zero where it is below this fraction of its maximum."""
 
 
 @dataclass(frozen=True)
@@ -116,8 +113,9 @@ def _just_infeasible(
     """
     duration = low * (1.0 - below)
     nearest = project(Basis(modes, orders, duration), points * duration)
+    back = 4.0 * below
     while not nearest.infeasible:  # the mesh called it too short, the continuum does not
-        high, duration = duration, duration * (1.0 - 4.0 * below)
+        high, duration, back = duration, duration * (1.0 - back), min(2.0 * back, 0.1)
         nearest = project(Basis(modes, orders, duration), points * duration)
     shorter = duration * (1.0 - 4.0 * below)
     other = project(Basis(modes, orders, shorter), points * shorter)
@@ -151,7 +149,7 @@ def _certify(basis: Basis, polished: Polished) -> Certificate:
     fine = np.linspace(0.0, duration, basis.samples_needed(duration))
     largest = float(np.abs(polished.multipliers @ basis(fine)).max())
     values = polished.multipliers @ basis(minima) / largest
-    contacts = minima[values < CONTACT]
+    contacts = minima[values < TOUCHING]
     before = np.union1d(contacts[contacts < duration * (1.0 - 1e-9)], polished.times[:-1])
     return Certificate(
         modes=basis.modes,

@@ -125,11 +125,12 @@ def _commented_rate(lines: list[str], source: str) -> float | None:
 
 
 def _units(names: list[str]) -> tuple[tuple[str, ...], str]:
-    """Channel names without units, and the unit when all channels have the same one."""
+    """Channel names and their unit when all have the same one; names with their units otherwise."""
     matches = [_UNIT.match(name) for name in names]
-    channels = tuple(match[1].strip() if match else name for match, name in zip(matches, names, strict=True))
     units = {match[2].strip() if match else "" for match in matches}
-    return channels, units.pop() if len(units) == 1 else ""
+    if len(units) > 1:
+        return tuple(names), ""
+    return tuple(match[1].strip() if match else name for match, name in zip(matches, names, strict=True)), units.pop()
 
 
 def _uniform(times: NDArray[np.float64], values: Table, first_line: int, source: str) -> tuple[float, Table]:

@@ -76,7 +76,8 @@ def shape_file(
     times = series.start + np.arange(shaped.shape[-1]) * dt
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["time", *series.channels])
+    unit = f" [{series.unit}]" if series.unit else ""
+    writer.writerow(["time [s]", *(f"{channel}{unit}" for channel in series.channels)])
     for t, row in zip(times, shaped.T, strict=True):
         writer.writerow([f"{t:.9g}", *(repr(float(value)) for value in row)])
     path = write_atomically(out, text.getvalue())

@@ -155,7 +155,7 @@ def test_shapers_survive_json() -> None:
 )
 def test_mzv_refuses_what_klipper_refuses(settings: dict[str, float], sentence: str) -> None:
     with pytest.raises(InputError, match=sentence):
-        klipper.mzv(50.0, 0.1, **settings)  # type: ignore[arg-type]
+        klipper.mzv(50.0, 0.1, **settings)
 
 
 @pytest.mark.parametrize("tolerance", [0.0, 1.0, -0.1, float("nan")])
