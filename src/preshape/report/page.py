@@ -69,8 +69,8 @@ def calibration_page(calibration: Calibration, version: str, figure: str | None 
         "<h2>The shaper</h2>",
         _impulses(calibration),
         f"<footer>Measured: {escape(names)}. Made by preshape {escape(version)}; the same numbers are in shaper.json "
-        "beside this page. Vibration left: the root mean square amplitude that remains of the modes after a "
-        "move, in the worst case of all frequencies up to 5 % off. " + _klipper_note(calibration) + "</footer>",
+        f"beside this page. Vibration left: the root mean square amplitude that remains of {_what_is_left(calibration)}, "
+        "in the worst case of all frequencies up to 5 % off. " + _klipper_note(calibration) + "</footer>",
         "</body></html>",
     ]
     return "\n".join(part for part in parts if part) + "\n"
@@ -86,6 +86,10 @@ def klipper_sentence(calibration: Calibration) -> str:
         f"assumes damping 0.075 to 0.15, that leaves {100.0 * fit.score.remaining_vibration:.1f} % of the vibration; "
         f"smoothing {fit.score.smoothing:.3f} mm, max_accel {fit.score.maximum_acceleration:.0f} mm/s²."
     )
+
+
+def _what_is_left(calibration: Calibration) -> str:
+    return "the modes after a move" if calibration.clear else "everything loud in the measurement"
 
 
 def _klipper_note(calibration: Calibration) -> str:
