@@ -69,8 +69,10 @@ def calibration_page(calibration: Calibration, version: str, figure: str | None 
         "<h2>The shaper</h2>",
         _impulses(calibration),
         f"<footer>Measured: {escape(names)}. Made by preshape {escape(version)}; the same numbers are in shaper.json "
-        f"beside this page. Vibration left: the root mean square amplitude that remains of {_what_is_left(calibration)}, "
-        "in the worst case of all frequencies up to 5 % off. " + _klipper_note(calibration) + "</footer>",
+        "beside this page. Vibration left: the root mean square amplitude that remains of "
+        f"{_what_is_left(calibration)}, in the worst case of all frequencies up to 5 % off. "
+        + _klipper_note(calibration)
+        + "</footer>",
         "</body></html>",
     ]
     return "\n".join(part for part in parts if part) + "\n"
