@@ -7,6 +7,8 @@ from dataclasses import replace
 from functools import reduce
 from typing import Any
 
+import numpy as np
+
 from preshape.mode import Mode, Modes, ModesLike
 from preshape.provenance import Design
 from preshape.shaper import Shaper
@@ -28,5 +30,6 @@ def recorded(shaper: Shaper, design: Design) -> Shaper:
     """The shaper with its design, the residual at the design modes measured."""
     residual = None
     if design.modes is not None:
-        residual = max(float(residual_vibration(shaper, mode.frequency, mode.damping)) for mode in design.modes)
+        frequencies, dampings = np.array([(mode.frequency, mode.damping) for mode in design.modes]).T
+        residual = float(residual_vibration(shaper, frequencies, dampings).max())
     return Shaper(shaper.times, shaper.amplitudes, replace(design, residual=residual))

@@ -1,21 +1,37 @@
-"""The constraint functions of zero vibration: t^k exp(s_j t), orthonormalised on the interval they are used on.
+"""The constraint functions of zero vibration, orthonormalised on the interval they are used on.
+
+The engine counts time backwards: the lead u of an impulse is its time before the last one. A shaper's residual is then
+sum a_i exp(-s_j u_i) whatever its duration, fast damped modes live near u = 0 where floating-point numbers are finest,
+and a longer shaper is one that may use larger leads. The functions are u^k exp(-s_j u).
 
 Scaling the rows is not enough: near-equal modes, and derivatives of one mode, are nearly parallel on a short interval,
-and then look satisfied long before they are. After orthonormalising, a distance of 1e-4 means 1e-4.
+and then look satisfied long before they are. Divided differences (kernel) tell near-equal modes apart; after
+orthonormalising, a distance of 1e-4 means 1e-4.
 """
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
+from preshape.kernel import (
+    DividedExponentials,
+    chebyshev_derivative,
+    chebyshev_values,
+    near_rates,
+    orthonormal_series,
+)
 from preshape.mode import Modes
 
-__all__ = ["Basis"]
+__all__ = ["Basis", "plain_rows"]
 
-SAMPLES_PER_PERIOD = 24
-"""Samples in a period of the fastest mode: for orthonormalising, and for finding every extremum of a combination."""
+SAMPLES_PER_PERIOD = 16
+"""Samples in a period of the fastest mode: for orthonormalising, and for finding the extrema of a combination."""
 
+SPARSER = 3
+"""Orthonormalising needs that much fewer samples: more than four a period of the fastest mode span what all span."""
 
 MAXIMUM_REFINEMENTS = 60
 
@@ -23,8 +39,23 @@ EXACT, BRACKET = 1e-15, 1e-6
 """Precisions of times relative to the duration: the last digit, and enough to tell neighbouring extrema apart."""
 
 
+FEASIBLE = 1e-12
+"""Smallest distance (rows orthonormal) that least squares tells from zero."""
+
+
+IN_SPAN = 1e-10
+"""Coefficients that miss the rows' span by no more than this fraction of the largest are in it."""
+
+DENSE = 1e-9
+"""Rounding of the rows from which on their span is computed in thirty-two digits instead of sixteen."""
+
+
 class Basis:
-    """Rows g(t) in R^m, m = 2 sum_j (q_j + 1), orthonormal over even samples of [0, duration], each of mean square one.
+    """Rows g(u) in R^m, orthonormal over even leads in [0, duration], each of mean square one.
+
+    m = 2 sum_j (q_j + 1) unless some are dependent to all digits. Modes far from each other are spanned by divided
+    exponentials; where these are dependent to more than seven digits (dense modes on a short interval), by series that
+    were orthonormalised in thirty-two digits.
 
     Parameters
     ----------
@@ -33,104 +64,144 @@ class Basis:
     orders : tuple of int
         Derivatives of the residual that vanish with it at each mode.
     duration : float
-        Length of the interval [s]; times outside [0, duration] may still be evaluated.
+        Length of the interval [s]; leads outside [0, duration] may still be evaluated.
+    groups : tuple of tuples of int, optional
+        Indices of modes that are treated as near each other, by default found from their distance; () for dense modes.
     """
 
-    def __init__(self, modes: Modes, orders: tuple[int, ...], duration: float) -> None:
+    def __init__(
+        self,
+        modes: Modes,
+        orders: tuple[int, ...],
+        duration: float,
+        groups: tuple[tuple[int, ...], ...] | None = None,
+    ) -> None:
         self.modes, self.orders, self.duration = modes, orders, duration
-        self._rates = np.repeat([-mode.pole.conjugate() for mode in modes], [order + 1 for order in orders])
-        self._powers = np.concatenate([np.arange(order + 1) for order in orders])
-        size = self._powers.size
-        derivative = np.diag(self._rates)
-        rows = np.flatnonzero(self._powers)
-        derivative[rows, rows - 1] = self._powers[rows] / duration
-        self._derivative = np.block([[derivative.real, -derivative.imag], [derivative.imag, derivative.real]])
-        samples = self.samples_needed(duration)
-        raw = self.raw(np.linspace(0.0, duration, samples))
-        triangle: NDArray[np.float64] = np.asarray(np.linalg.qr(raw.T, mode="r"))
-        self._transform = np.linalg.solve(triangle.T, np.eye(2 * size)) * np.sqrt(samples)
-        self.size = 2 * size
-        phase = float(np.abs(self._rates).max()) * duration
-        self.rounding = float(np.finfo(float).eps * phase * np.linalg.norm(self._transform, 2))
-        """Error of g that the rounding of a time alone makes [-]: no equation in g can be met better."""
+        self._fastest = max(mode.frequency for mode in modes)
+        self._rates = np.array([-mode.pole.conjugate() for mode in modes])
+        leads = np.linspace(0.0, duration, self.samples_needed(duration) // SPARSER + 2 * len(modes))
+        self.groups = near_rates(list(self._rates), duration) if groups is None else groups
+        self._functions: DividedExponentials | None = None
+        if self.groups:
+            self._with_exponentials(leads)
+        if not self.groups:
+            self._with_series(leads)
+        elif groups is None and self.rounding > DENSE:
+            near, self.groups = self.groups, ()
+            self._with_series(leads)
+            if self.size < 2 * sum(order + 1 for order in orders):  # they tell less apart than divided differences do
+                self.groups = near
+                self._with_exponentials(leads)
+        self.zero = max(FEASIBLE, 4.0 * math.sqrt(self.size) * self.rounding)
+        """A distance below this counts as zero: the constraints can be met."""
+
+    def _with_exponentials(self, leads: NDArray[np.float64]) -> None:
+        nodes = [[self._rates[i] for i in group for _ in range(self.orders[i] + 1)] for group in self.groups]
+        self._functions = DividedExponentials(nodes, self.duration)
+        slope = self._functions.derivative
+        self._derivative = np.block([[slope.real, -slope.imag], [slope.imag, slope.real]])
+        phase = 1.0 + np.multiply.outer(np.abs(self._functions.rates), leads)
+        self._orthonormalise(self.raw(leads), np.eye(2 * self._functions.size), np.concatenate([phase, phase]))
+
+    def _with_series(self, leads: NDArray[np.float64]) -> None:
+        self._functions = None
+        series = orthonormal_series(self._rates, self.orders, self.duration)
+        self._count = series.shape[1]
+        self._derivative = chebyshev_derivative(self._count, self.duration)
+        angles = 2.0 * np.arcsin(np.sqrt(leads / self.duration))
+        self._orthonormalise(self.raw(leads), series, 1.0 + np.multiply.outer(np.arange(self._count), angles))
+
+    def _orthonormalise(
+        self, raw: NDArray[np.float64], combine: NDArray[np.float64], phase: NDArray[np.float64]
+    ) -> None:
+        """The transform from raw functions at even leads to orthonormal rows, and what rounding does to these."""
+        triangle = np.asarray(np.linalg.qr((combine @ raw).T, mode="r"))
+        self._transform = (_inverse_transposed(triangle) @ combine) * math.sqrt(raw.shape[1])
+        self.size = int(self._transform.shape[0])
+        spread = np.abs(self._transform) @ (np.abs(raw) * phase)
+        self.rounding = float(np.finfo(float).eps * spread.max())
+        """Error of g that rounding a lead and the functions makes at most [-]: no equation in g can be met better."""
 
     def samples_needed(self, duration: float) -> int:
-        """How many samples of [0, duration] show every extremum of a combination of the rows."""
-        fastest = max(mode.frequency for mode in self.modes)
-        return int(np.ceil(SAMPLES_PER_PERIOD * fastest * duration)) + 8 * self._powers.size
+        """How many samples of [0, duration] [s] show the extrema of a combination of the rows."""
+        functions = sum(order + 1 for order in self.orders)
+        return math.ceil(SAMPLES_PER_PERIOD * self._fastest * duration) + 8 * functions
 
-    def __call__(self, times: NDArray[np.float64], derivative: int = 0) -> NDArray[np.float64]:
-        """g or a derivative of it at `times` [s], shape (row, time)."""
-        values: NDArray[np.float64] = self._transform @ self.raw(times, derivative)
+    def __call__(self, leads: NDArray[np.float64]) -> NDArray[np.float64]:
+        """g at `leads` [s], shape (row, lead)."""
+        values: NDArray[np.float64] = self._transform @ self.raw(leads)
         return values
 
-    def raw(self, times: NDArray[np.float64], derivative: int = 0) -> NDArray[np.float64]:
-        """(t/T)^k exp(s_j (t - T)) or a derivative of it, real parts before imaginary parts, shape (row, time)."""
-        wave = np.exp(np.multiply.outer(self._rates, times - self.duration))
-        wave *= (times / self.duration) ** self._powers[:, None]
-        rows = np.concatenate([wave.real, wave.imag])
-        for _ in range(derivative):
-            rows = self._derivative @ rows
-        return rows
+    def raw(self, leads: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The functions that g combines, shape (function, lead): exponentials, real parts first, or polynomials."""
+        if self._functions is None:
+            return chebyshev_values(leads, self.duration, self._count)
+        values = self._functions(leads)
+        return np.concatenate([values.real, values.imag])
 
-    def coefficients(self, multipliers: NDArray[np.float64], duration: float) -> tuple[complex, ...]:
-        """The combination multipliers . g(t) as c_jk of Re sum c_jk (t/T)^k exp(s_j (t - T)) with T = `duration`."""
+    def slopes(self, raw: NDArray[np.float64], derivative: int) -> NDArray[np.float64]:
+        """d^n g / du^n from what :meth:`raw` gave, shape (row, lead) [1/s^n]."""
+        transform = self._transform
+        for _ in range(derivative):
+            transform = transform @ self._derivative
+        values: NDArray[np.float64] = transform @ raw
+        return values
+
+    def values(self, raw: NDArray[np.float64]) -> NDArray[np.float64]:
+        """g from what :meth:`raw` gave, shape (row, lead)."""
+        return self.slopes(raw, 0)
+
+    def weights(self, multipliers: NDArray[np.float64], derivatives: int) -> list[NDArray[np.float64]]:
+        """Row vectors that give p = multipliers . g and its first `derivatives` derivatives when applied to raw."""
+        found = [multipliers @ self._transform]
+        for _ in range(derivatives):
+            found.append(found[-1] @ self._derivative)
+        return found
+
+    def coefficients(self, multipliers: NDArray[np.float64]) -> tuple[complex, ...]:
+        """multipliers . g(u) as c_n of Re sum c_n phi_n(u), phi the divided exponentials or Chebyshev polynomials."""
+        if self._functions is None:
+            return tuple(complex(value) for value in multipliers @ self._transform)
         real, imaginary = np.split(self._transform.T @ multipliers, 2)
-        stretch = duration / self.duration
-        scale = stretch**self._powers * np.exp(self._rates * (duration - self.duration))
-        return tuple(complex(value) for value in (real - 1j * imaginary) * scale)
+        return tuple(complex(value) for value in real - 1j * imaginary)
 
     def multipliers(self, coefficients: NDArray[np.complex128]) -> NDArray[np.float64]:
-        """The inverse of :meth:`coefficients` for T = this basis' duration, scaled to length one; zeros stay zeros."""
-        plain = np.concatenate([coefficients.real, -coefficients.imag])
-        found = np.linalg.solve(self._transform.T, plain)
+        """The inverse of :meth:`coefficients`, scaled to length one; zeros when they are no combination of the rows."""
+        if self._functions is None:
+            plain = coefficients.real
+            if plain.size != self._transform.shape[1] or coefficients.imag.any():
+                return np.zeros(self.size)
+        else:
+            plain = np.concatenate([coefficients.real, -coefficients.imag])
+        found: NDArray[np.float64] = np.asarray(np.linalg.lstsq(self._transform.T, plain, rcond=None)[0], dtype=float)
+        miss = float(np.abs(self._transform.T @ found - plain).max())
         length = float(np.linalg.norm(found))
-        return found / length if length > 0.0 else found
+        if length == 0.0 or miss > IN_SPAN * float(np.abs(plain).max()):
+            return np.zeros(self.size)
+        return found / length
 
-    def minima(self, multipliers: NDArray[np.float64], stop: float, precision: float = EXACT) -> NDArray[np.float64]:
-        """Times of all local minima of p = multipliers . g on [0, stop], both ends included [s].
 
-        Between neighbouring roots of p'' the slope is monotone, so none of its roots is missed there; samples alone
-        would miss a minimum beside a maximum, which is what flat certificates have. `precision` is that of the times,
-        relative to the duration.
-        """
-        weights = [multipliers @ self._transform]
-        for _ in range(3):
-            weights.append(weights[-1] @ self._derivative)
-        samples = np.linspace(0.0, stop, self.samples_needed(stop))
-        rows = self.raw(samples)
-        bends = weights[2] @ rows >= 0.0
-        change = np.flatnonzero(bends[:-1] != bends[1:])
-        turning = self._refined(weights[2:], samples[change], samples[change + 1], BRACKET)
-        nodes = np.concatenate([samples, turning])
-        rising = np.concatenate([weights[1] @ rows, weights[1] @ self.raw(turning)]) >= 0.0
-        order = np.argsort(nodes, kind="stable")
-        nodes, rising = nodes[order], rising[order]
-        turns = np.flatnonzero(~rising[:-1] & rising[1:])
-        inner = self._refined(weights[1:], nodes[turns], nodes[turns + 1], precision)
-        return np.unique(np.concatenate([[0.0], inner, [stop]]))
+def plain_rows(
+    modes: Modes, orders: tuple[int, ...], leads: NDArray[np.float64], duration: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(u/T)^k exp(-s_j u), what the papers' equations ask, and their slopes [1/s], each of shape (row, lead).
 
-    def _refined(
-        self,
-        weights: list[NDArray[np.float64]],
-        low: NDArray[np.float64],
-        high: NDArray[np.float64],
-        precision: float,
-    ) -> NDArray[np.float64]:
-        """The root of weights[0] . raw in each bracket: Newton steps (slope weights[1]) that bisection keeps inside."""
-        if low.size == 0:
-            return low
-        sign = np.where(weights[0] @ self.raw(high) >= 0.0, 1.0, -1.0)
-        guess = 0.5 * (low + high)
-        for _ in range(MAXIMUM_REFINEMENTS):
-            rows = self.raw(guess)
-            value, slope = sign * (weights[0] @ rows), sign * (weights[1] @ rows)
-            low, high = np.where(value < 0.0, guess, low), np.where(value < 0.0, high, guess)
-            step = guess - value / np.where(slope > 0.0, slope, np.inf)
-            inside = (step >= low) & (step <= high) & (slope > 0.0)
-            following = np.where(inside, step, 0.5 * (low + high))
-            moved = float(np.abs(following - guess).max())
-            guess = following
-            if moved <= precision * self.duration:
-                break
-        return guess
+    Real parts come before imaginary parts.
+    """
+    rates = np.repeat([-mode.pole.conjugate() for mode in modes], [order + 1 for order in orders])
+    powers = np.concatenate([np.arange(order + 1) for order in orders])[:, None]
+    wave = np.exp(np.multiply.outer(-rates, leads))
+    rows = wave * (leads / duration) ** powers
+    slopes = -rates[:, None] * rows + wave * (powers / duration) * (leads / duration) ** np.maximum(powers - 1, 0)
+    return np.concatenate([rows.real, rows.imag]), np.concatenate([slopes.real, slopes.imag])
+
+
+def _inverse_transposed(triangle: NDArray[np.float64]) -> NDArray[np.float64]:
+    """R^-T of an upper triangular R."""
+    from scipy.linalg.lapack import dtrtri
+
+    inverse, trouble = dtrtri(triangle)
+    if trouble:
+        return np.asarray(np.linalg.pinv(triangle).T, dtype=float)
+    result: NDArray[np.float64] = inverse.T
+    return result

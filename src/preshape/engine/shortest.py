@@ -1,37 +1,56 @@
 """The shortest positive shaper with zero vibration of given orders at given modes, and the certificate that it is.
 
-(1) Bisection on the duration T with non-negative least squares on a coarse mesh; (2) just below the shortest T the
-nearest measure on the continuum shows the impulses and the separating polynomial; (3) Newton's method on the optimality
-system makes them exact; (4) the certificate is checked on the continuum. When (3) or (4) fails, (2) moves closer.
+(1) On a mesh of leads, non-negative least squares brackets the duration between two neighbouring mesh points; (2) the
+nearest measure just below the shortest duration shows the impulses and the separating polynomial; (3) Newton's method
+on the optimality system makes them exact; (4) the certificate is checked on the continuum. When (3) or (4) fails, the
+impulses are looked for on the continuum, ever closer below the shortest duration.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape.engine.basis import Basis
-from preshape.engine.newton import Polished, polish
-from preshape.engine.projection import FEASIBLE, Projection, nearest_on, project
-from preshape.engine.unresolved import convolved_positive, is_resolved, with_fewer_constraints
+from preshape.engine.basis import Basis, plain_rows
+from preshape.engine.certify import certified
+from preshape.engine.newton import Polished, settled
+from preshape.engine.projection import Projection, nearest_on, nearest_on_mesh, project
+from preshape.engine.repair import confirmed
+from preshape.engine.unresolved import convolved_positive, halves, is_resolved, thinned
 from preshape.mode import Modes
-from preshape.provenance import TOUCHING, Certificate
+from preshape.provenance import Certificate
+from preshape.shaper import Shaper
 
-__all__ = ["Shortest", "shortest_positive"]
+__all__ = ["Shortest", "proved", "shortest_positive"]
 
 MESH_PER_PERIOD = 16
-"""Mesh points in a period of the fastest mode for the bisection."""
+"""Mesh points in a period of the fastest mode for the bracket."""
 
-BISECTION = 3e-3
-"""Relative width at which the bisection on the mesh stops: the mesh itself is no better."""
+MAXIMUM_REACHES = 4
+
+ROOM = 1.06
+"""The mesh reaches beyond the convolved shaper by this factor, whose impulses lie between mesh points."""
+
+COARSE = 4
+"""Every so many mesh points are a first guess at the impulses."""
+
+MUCH_SHORTER = 0.8
+"""A duration of less than this part of the mesh calls for functions that are orthonormal on the shorter interval."""
 
 BELOW = (1e-3, 1e-4, 1e-5, 1e-6)
 """Relative distances below the shortest duration at which the impulses are looked for, in turn."""
 
-SAME_IMPULSE = 0.5
+SAME_IMPULSE = (1.5, 0.5)
 """Support points closer than this many mesh steps are one impulse that lies between them."""
+
+
+MET = 1e-11
+"""Largest miss of the papers' equations [-] that counts as met."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +73,17 @@ class Shortest:
     gap: float
 
 
+@dataclass(frozen=True)
+class _Bracket:
+    """Functions on a mesh of leads [s], and the mesh's own shortest duration: too short at `low`, enough at `high`."""
+
+    basis: Basis
+    mesh: NDArray[np.float64]
+    low: int
+    high: int
+    nearest: Projection
+
+
 def shortest_positive(modes: Modes, orders: tuple[int, ...]) -> Shortest:
     """Find and prove the shortest positive shaper.
 
@@ -64,61 +94,94 @@ def shortest_positive(modes: Modes, orders: tuple[int, ...]) -> Shortest:
     orders : tuple of int
         Derivatives of the residual that vanish with it, at each mode (0: ZV, 1: ZVD ...).
     """
-    convolved = sum((order + 1) * mode.damped_period / 2.0 for mode, order in zip(modes, orders, strict=True))
-    if not is_resolved(modes, orders, convolved):
+    lengths = [(order + 1) * mode.damped_period / 2.0 for mode, order in zip(modes, orders, strict=True)]
+    bracket = _bracketed(modes, orders, max(lengths), sum(lengths))
+    if not is_resolved(bracket.basis):
         return _unresolved(modes, orders)
+    too_short = 0.0
+    for basis, nearest, width, excluded in _starts(bracket):
+        too_short = max(too_short, excluded)
+        leads, amplitudes = _clustered(nearest, width)
+        if leads.size < 2:
+            continue
+        found = confirmed(basis, leads, amplitudes, nearest.multipliers)
+        if found is not None:
+            return proved(basis, found)
+    return _feasible(bracket, too_short)
+
+
+def proved(basis: Basis, polished: Polished) -> Shortest:
+    """The exact shaper with its certificate."""
+    exact = settled(basis, polished)
+    certificate = certified(basis, exact)
+    times = exact.leads[-1] - exact.leads[::-1]
+    return Shortest(times, exact.amplitudes[::-1], certificate, 0.0)
+
+
+def _bracketed(modes: Modes, orders: tuple[int, ...], longest: float, convolved: float) -> _Bracket:
+    """Bisection over the mesh: durations up to `longest` are too short, the `convolved` one is enough [s]."""
     fastest = max(mode.frequency for mode in modes)
-    mesh = np.linspace(0.0, 1.0, int(np.ceil(MESH_PER_PERIOD * fastest * convolved)) + 2)
-    too_short, enough = _bisect(modes, orders, mesh, convolved)
-    step = 1.0 / (MESH_PER_PERIOD * fastest)
-    points = mesh
-    for below in BELOW:
-        duration, nearest = _just_infeasible(modes, orders, points, too_short, enough, below)
-        too_short = duration
-        basis = Basis(modes, orders, duration)
-        for width in (SAME_IMPULSE, SAME_IMPULSE / 4.0):
-            times, amplitudes = _clustered(nearest, width * step)
-            if times.size < 2:
-                continue
-            polished = polish(basis, times, amplitudes, nearest.multipliers)
-            if polished.converged:
-                polished = polished.without_empty_impulses()
-                certificate = _certify(basis, polished)
-                if certificate.holds:
-                    return Shortest(polished.times, polished.amplitudes, certificate, 0.0)
-        points = np.union1d(mesh, nearest.times / duration)
-    return _feasible(modes, orders, points, too_short, enough)
-
-
-def _bisect(modes: Modes, orders: tuple[int, ...], mesh: NDArray[np.float64], convolved: float) -> tuple[float, float]:
-    """A duration too short on the mesh (relative times), and one that is enough on it [s]."""
-    low, high = 0.0, 1.02 * convolved
-    while nearest_on(Basis(modes, orders, high), mesh * high).distance > FEASIBLE:
-        low, high = high, 1.1 * high
-    while high - low > BISECTION * high:
-        middle = 0.5 * (low + high)
-        if nearest_on(Basis(modes, orders, middle), mesh * middle).distance > FEASIBLE:
-            low = middle
-        else:
+    reach = ROOM * convolved
+    for _ in range(MAXIMUM_REACHES):
+        mesh = np.linspace(0.0, reach, math.ceil(MESH_PER_PERIOD * fastest * reach) + 8)
+        basis = Basis(modes, orders, reach)
+        rows = basis(mesh)
+        enough, used = nearest_on_mesh(basis, mesh, rows, np.arange(0, mesh.size, COARSE))
+        if enough.feasible:
+            break
+        reach *= 1.2
+    low, high = int(longest * (1.0 - 1e-9) / mesh[1]), mesh.size - 1
+    nearest, _ = nearest_on_mesh(basis, mesh[: low + 1], rows[:, : low + 1], _within(low, used))
+    while high - low > 1:
+        middle = (low + high) // 2
+        trial, used = nearest_on_mesh(basis, mesh[: middle + 1], rows[:, : middle + 1], _within(middle, used))
+        if trial.feasible:
             high = middle
-    return low, high
+        else:
+            low, nearest = middle, trial
+    if mesh[high] < MUCH_SHORTER * reach and is_resolved(basis):
+        return _bracketed(modes, orders, float(mesh[max(low - 1, 0)]), float(mesh[high]))
+    return _Bracket(basis, mesh, low, high, nearest)
+
+
+def _within(last: int, used: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Points `used` for another duration as a start for the one that ends at index `last`: stretched, and coarse."""
+    stretched = np.rint(used * (last / max(int(used[-1]), 1))).astype(np.intp)
+    return np.union1d(stretched, np.append(np.arange(0, last + 1, COARSE), last))
+
+
+def _starts(bracket: _Bracket) -> Iterator[tuple[Basis, Projection, float, float]]:
+    """Starts for Newton's method, the cheap ones first, with a cluster's width and a duration proved too short."""
+    basis, mesh = bracket.basis, bracket.mesh
+    step, proved = float(mesh[1]), 0.0
+    for width in SAME_IMPULSE:
+        yield basis, bracket.nearest, width * step, proved
+    low, high, points = float(mesh[bracket.low]), float(mesh[bracket.high]), mesh[: bracket.high + 1]
+    for below in BELOW:
+        low, nearest = _just_infeasible(basis, points, low, high, below)
+        for width in (SAME_IMPULSE[-1], SAME_IMPULSE[-1] / 4.0):
+            yield basis, nearest, width * step, low
+        points = np.union1d(points, nearest.leads)
 
 
 def _just_infeasible(
-    modes: Modes, orders: tuple[int, ...], points: NDArray[np.float64], low: float, high: float, below: float
+    basis: Basis, points: NDArray[np.float64], low: float, high: float, below: float
 ) -> tuple[float, Projection]:
     """A duration short of the shortest by about the fraction `below`, with the nearest measure there.
 
     The distance falls to zero linearly in the duration, so two durations that are too short predict the shortest.
     """
+
+    def nearest_for(duration: float) -> Projection:
+        return project(basis, np.append(points[points < duration], duration), duration)
+
     duration = low * (1.0 - below)
-    nearest = project(Basis(modes, orders, duration), points * duration)
-    back = 4.0 * below
+    nearest, back = nearest_for(duration), 4.0 * below
     while not nearest.infeasible:  # the mesh called it too short, the continuum does not
         high, duration, back = duration, duration * (1.0 - back), min(2.0 * back, 0.1)
-        nearest = project(Basis(modes, orders, duration), points * duration)
+        nearest = nearest_for(duration)
     shorter = duration * (1.0 - 4.0 * below)
-    other = project(Basis(modes, orders, shorter), points * shorter)
+    other = nearest_for(shorter)
     for _ in range(8):
         slope = (other.distance - nearest.distance) / (duration - shorter)
         if slope <= 0.0:
@@ -127,7 +190,7 @@ def _just_infeasible(
         target = predicted * (1.0 - below)
         if target <= duration * (1.0 + 0.5 * below):
             break
-        candidate = project(Basis(modes, orders, target), points * target)
+        candidate = nearest_for(target)
         if not candidate.infeasible:
             high = target
             continue
@@ -136,47 +199,35 @@ def _just_infeasible(
 
 
 def _clustered(nearest: Projection, width: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Support points closer than `width` [s] as one impulse at their centroid."""
-    group = np.concatenate([[0], np.cumsum(np.diff(nearest.times) > width)])
+    """Support points closer than `width` [s] as one impulse at their centroid; the last impulse keeps lead zero."""
+    group = np.concatenate([[0], np.cumsum(np.diff(nearest.leads) > width)])
     amplitudes = np.bincount(group, nearest.amplitudes).astype(float)
-    return np.bincount(group, nearest.amplitudes * nearest.times) / amplitudes, amplitudes
+    return np.bincount(group, nearest.amplitudes * nearest.leads) / amplitudes, amplitudes
 
 
-def _certify(basis: Basis, polished: Polished) -> Certificate:
-    """Check on the continuum that nothing shorter can do it."""
-    duration = float(polished.times[-1])
-    minima = basis.minima(polished.multipliers, duration)
-    fine = np.linspace(0.0, duration, basis.samples_needed(duration))
-    largest = float(np.abs(polished.multipliers @ basis(fine)).max())
-    values = polished.multipliers @ basis(minima) / largest
-    contacts = minima[values < TOUCHING]
-    before = np.union1d(contacts[contacts < duration * (1.0 - 1e-9)], polished.times[:-1])
-    return Certificate(
-        modes=basis.modes,
-        orders=basis.orders,
-        duration=duration,
-        coefficients=basis.coefficients(polished.multipliers, duration),
-        minimum=float(values.min()),
-        contacts=tuple(float(t) for t in contacts),
-        exclusion=nearest_on(Basis(basis.modes, basis.orders, duration), before).distance,
-    )
-
-
-def _feasible(
-    modes: Modes, orders: tuple[int, ...], points: NDArray[np.float64], too_short: float, enough: float
-) -> Shortest:
+def _feasible(bracket: _Bracket, too_short: float) -> Shortest:
     """What is left when Newton does not confirm: a shaper that meets the constraints, and how short it might be."""
-    nearest = nearest_on(Basis(modes, orders, enough), points * enough)
-    times = nearest.times - nearest.times[0]
-    convolved = convolved_positive(modes, orders)
-    if times[-1] >= convolved.duration:
-        return Shortest(convolved.times, convolved.amplitudes, None, 1.0 - too_short / convolved.duration)
-    return Shortest(times, nearest.amplitudes, None, float(1.0 - too_short / times[-1]))
+    basis = bracket.basis
+    nearest = nearest_on(basis, bracket.mesh[: bracket.high + 1])
+    polished = settled(basis, Polished(nearest.leads, nearest.amplitudes, nearest.multipliers, math.inf))
+    rows, _ = plain_rows(basis.modes, basis.orders, polished.leads, basis.duration)
+    met = float(np.abs(rows @ polished.amplitudes).max()) <= MET and bool((polished.amplitudes > 0.0).all())
+    if not met or polished.leads[0] != 0.0:
+        return _unresolved(basis.modes, basis.orders)
+    times = polished.leads[-1] - polished.leads[::-1]
+    return Shortest(times, polished.amplitudes[::-1], None, 1.0 - too_short / float(times[-1]))
 
 
 def _unresolved(modes: Modes, orders: tuple[int, ...]) -> Shortest:
-    """The convolved shaper, and the bound that fewer constraints give, when the modes are too near to search."""
-    convolved = convolved_positive(modes, orders)
-    bound = shortest_positive(*with_fewer_constraints(modes, orders))
-    lower = float(bound.times[-1]) * (1.0 - bound.gap)
-    return Shortest(convolved.times, convolved.amplitudes, None, max(0.0, 1.0 - lower / convolved.duration))
+    """Shapers for the halves of the modes, convolved, and the bound that fewer constraints give."""
+    if len(modes) == 1:
+        alone = convolved_positive(modes, orders)
+        return Shortest(alone.times, alone.amplitudes, None, 1.0)
+    parts = [shortest_positive(*half) for half in halves(modes, orders)]
+    both = reduce(Shaper.convolve, [Shaper.normalised(part.times, part.amplitudes) for part in parts])
+    lower = max(float(part.times[-1]) * (1.0 - part.gap) for part in parts)
+    fewer = thinned(modes, orders, lower)
+    if fewer[0] != modes or fewer[1] != orders:
+        bound = shortest_positive(*fewer)
+        lower = max(lower, float(bound.times[-1]) * (1.0 - bound.gap))
+    return Shortest(both.times, both.amplitudes, None, max(0.0, 1.0 - lower / both.duration))

@@ -1,8 +1,9 @@
-"""What remains certain when modes are too near each other for the arithmetic.
+"""What remains certain when modes are too near each other, or too many for the time, to be told apart in doubles.
 
-Near-equal modes make the constraint rows nearly parallel; with many derivatives they differ by less than the rounding
-of a double. A search would then call far too short an interval enough. The convolved shaper meets the constraints
-exactly whatever the distance of the modes, and the shortest shaper for fewer constraints is a lower bound.
+Divided differences tell near-equal modes apart, but where modes fill a frequency range so densely that their functions
+nearly span everything on the interval, the constraint rows differ by less than the rounding of a double. A search would
+then call far too short an interval enough. Two shapers for half of the modes each, convolved, meet the constraints
+exactly, and the shortest shaper for fewer constraints is a lower bound.
 """
 
 from __future__ import annotations
@@ -16,15 +17,21 @@ from preshape.engine.basis import Basis
 from preshape.mode import Mode, Modes
 from preshape.shaper import Shaper
 
-__all__ = ["convolved_positive", "is_resolved", "with_fewer_constraints"]
+__all__ = ["convolved_positive", "halves", "is_resolved", "thinned"]
 
-RESOLVED = 1e-6
+RESOLVED = 1e-7
 """Rounding of the orthonormal rows up to which a distance of zero can be told from a small one."""
 
 
-def is_resolved(modes: Modes, orders: tuple[int, ...], duration: float) -> bool:
-    """Whether double precision tells these constraints apart on an interval of `duration` [s]."""
-    return Basis(modes, orders, duration).rounding <= RESOLVED
+def is_resolved(basis: Basis) -> bool:
+    """Whether double precision tells these constraints apart on the interval of `basis`."""
+    return basis.rounding <= RESOLVED
+
+
+def halves(modes: Modes, orders: tuple[int, ...]) -> list[tuple[Modes, tuple[int, ...]]]:
+    """Every other mode, and those between them: each half is twice as far apart."""
+    order = sorted(range(len(modes)), key=lambda i: modes[i].frequency)
+    return [(Modes([modes[i] for i in half]), tuple(orders[i] for i in half)) for half in (order[::2], order[1::2])]
 
 
 def convolved_positive(modes: Modes, orders: tuple[int, ...]) -> Shaper:
@@ -38,7 +45,14 @@ def convolved_positive(modes: Modes, orders: tuple[int, ...]) -> Shaper:
     return reduce(Shaper.convolve, [one(mode, order) for mode, order in zip(modes, orders, strict=True)])
 
 
-def with_fewer_constraints(modes: Modes, orders: tuple[int, ...]) -> tuple[Modes, tuple[int, ...]]:
+def thinned(modes: Modes, orders: tuple[int, ...], duration: float) -> tuple[Modes, tuple[int, ...]]:
+    """The constraints without those that double precision cannot tell from the others on [0, duration] [s]."""
+    while len(modes) > 1 and not is_resolved(Basis(modes, orders, duration)):
+        modes, orders = _with_fewer(modes, orders)
+    return modes, orders
+
+
+def _with_fewer(modes: Modes, orders: tuple[int, ...]) -> tuple[Modes, tuple[int, ...]]:
     """One order less at one of the two nearest modes, or one of them left out."""
     poles = np.array([mode.pole for mode in modes])
     distance = np.abs(poles[:, None] - poles[None, :]) + np.diag(np.full(poles.size, np.inf))

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from preshape.engine.basis import Basis
-from preshape.engine.projection import nearest_on
-from preshape.provenance import EXCLUDED_AT, MINIMUM_ALLOWED, TOUCHING, Certificate
+from preshape.band import Band
+from preshape.engine.basis import Basis, plain_rows
+from preshape.engine.certify import SAME_LEAD, exclusion_of
+from preshape.engine.edges import edges_of, largest_vibration
+from preshape.engine.polynomial import Polynomial
+from preshape.provenance import EXCLUDED_AT, MINIMUM_ALLOWED, TOUCHING, Certificate, Tolerated
 from preshape.shaper import Shaper
 
 __all__ = ["is_proved_shortest"]
@@ -14,15 +17,18 @@ __all__ = ["is_proved_shortest"]
 MET = 1e-10
 """Largest miss of the constraint integrals (rows scaled to 1) that counts as met by a shaper from a file."""
 
-SAME_TIME = 1e-9
-"""Times that agree to this fraction of the duration are the same."""
+KEPT = 1e-8
+"""Vibration over a tolerance by less than this fraction is rounding."""
+
+PRECISION = 1e-9
+"""Precision of the minima's places relative to the duration."""
 
 
 def is_proved_shortest(shaper: Shaper) -> bool:
     """Whether the certificate that a shaper carries proves it shortest; nothing that it says of itself is believed.
 
     The impulses are positive and meet the certificate's constraints; its polynomial is nowhere below zero and touches
-    zero at every impulse; and the points where it touches before the end cannot meet the constraints without the end.
+    zero at every impulse; and the points where it touches, but the first impulse, cannot meet the constraints.
 
     Parameters
     ----------
@@ -38,23 +44,56 @@ def is_proved_shortest(shaper: Shaper) -> bool:
     False
     """
     proof = shaper.design.certificate
-    if proof is None or proof.modes != shaper.design.modes or not _same_end(proof, shaper):
+    if proof is None or not _same_end(proof, shaper) or not _is_about(proof, shaper):
         return False
-    basis = Basis(proof.modes, proof.orders, shaper.duration)
-    if not (shaper.amplitudes > 0.0).all() or np.abs(basis.raw(shaper.times) @ shaper.amplitudes).max() > MET:
+    leads, amplitudes = shaper.duration - shaper.times[::-1], shaper.amplitudes[::-1]
+    if not (amplitudes > 0.0).all():
         return False
-    multipliers = basis.multipliers(np.array(proof.coefficients))
-    minima = basis.minima(multipliers, shaper.duration)
-    fine = np.linspace(0.0, shaper.duration, basis.samples_needed(shaper.duration))
-    largest = float(np.abs(multipliers @ basis(fine)).max())
-    if largest == 0.0 or float((multipliers @ basis(minima)).min()) < MINIMUM_ALLOWED * largest:
+    basis: Basis | None = None
+    multipliers = np.zeros(0)
+    if proof.modes is not None:
+        rows, _ = plain_rows(proof.modes, proof.orders, leads, shaper.duration)
+        if np.abs(rows @ amplitudes).max() > MET:
+            return False
+        basis = Basis(proof.modes, proof.orders, proof.reference, proof.groups)
+        multipliers = basis.multipliers(np.array(proof.coefficients))
+    rates = np.array([point.rate for point in proof.points], dtype=complex)
+    waves = np.array([point.multiplier for point in proof.points], dtype=complex)
+    tolerances = np.array([point.tolerance for point in proof.points])
+    if (np.abs(np.exp(np.multiply.outer(-rates, leads)) @ amplitudes) > tolerances * (1.0 + KEPT)).any():
         return False
-    if float(np.abs(multipliers @ basis(shaper.times)).max()) > TOUCHING * largest:
+    polynomial = Polynomial(basis, multipliers, rates, waves, float(tolerances @ np.abs(waves)))
+    minima, values, largest = polynomial.minima(shaper.duration, PRECISION)
+    if largest == 0.0 or values.min() < MINIMUM_ALLOWED * largest:
         return False
-    contacts = np.union1d(minima[multipliers @ basis(minima) < TOUCHING * largest], shaper.times)
-    before = contacts[contacts < shaper.duration * (1.0 - SAME_TIME)]
-    return nearest_on(basis, before).distance > EXCLUDED_AT
+    if float(np.abs(polynomial(leads)).max()) > TOUCHING * largest:
+        return False
+    contacts = np.union1d(minima[values < TOUCHING * largest], leads)
+    return exclusion_of(basis, proof.points, contacts, shaper.duration) > EXCLUDED_AT
+
+
+def _is_about(proof: Certificate, shaper: Shaper) -> bool:
+    """Whether the proof is about what the shaper was designed for: its modes, and every band with its tolerance."""
+    if proof.modes is None:
+        tolerance = shaper.design.settings.get("tolerance")
+        if not proof.bands or not proof.points or not isinstance(tolerance, float):
+            return False
+        edges = edges_of(proof.bands, tolerance)
+        leads = shaper.duration - shaper.times[::-1]
+        if largest_vibration(edges, leads, shaper.amplitudes[::-1]).excess > KEPT:
+            return False
+        return all(point.tolerance >= tolerance and _inside(point, proof.bands) for point in proof.points)
+    return proof.modes == shaper.design.modes and not proof.points
+
+
+def _inside(point: Tolerated, bands: tuple[Band, ...]) -> bool:
+    """Whether a point lies in one of the bands, to rounding."""
+    return any(
+        band.low * (1.0 - SAME_LEAD) <= point.frequency <= band.high * (1.0 + SAME_LEAD)
+        and band.least_damping - SAME_LEAD <= point.damping <= band.highest_damping + SAME_LEAD
+        for band in bands
+    )
 
 
 def _same_end(proof: Certificate, shaper: Shaper) -> bool:
-    return abs(proof.duration - shaper.duration) <= SAME_TIME * shaper.duration
+    return abs(proof.duration - shaper.duration) <= SAME_LEAD * shaper.duration

@@ -1,0 +1,45 @@
+"""The shortest shaper near one that is known: Newton's method alone, verified as any other.
+
+When modes have moved by little (a robot in another pose, a payload), impulses, duration and multipliers have moved by
+little too. The constraint functions keep their form when time is stretched with the periods, so the old solution,
+stretched, is the start. This is the real-time redesign that Hyde's chapter 6 asks for.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from preshape.engine.basis import Basis
+from preshape.engine.repair import confirmed
+from preshape.engine.shortest import Shortest, proved
+from preshape.mode import Modes
+from preshape.shaper import Shaper
+
+__all__ = ["shortest_near"]
+
+PIVOTS, STEPS = 3, 12
+"""Impulses that may appear, vanish or merge on the way, and Newton steps each; beyond that the full search is quicker."""
+
+
+def shortest_near(modes: Modes, orders: tuple[int, ...], previous: Shaper) -> Shortest | None:
+    """The proved shortest shaper by Newton's method from `previous`, or None when it does not lead there.
+
+    Parameters
+    ----------
+    modes, orders
+        As for :func:`preshape.engine.shortest_positive`.
+    previous : Shaper
+        With a certificate for as many modes of the same orders, in the same order.
+    """
+    proof = previous.design.certificate
+    if proof is None or proof.modes is None or proof.points or proof.orders != orders or not proof.groups:
+        return None
+    logarithms = [math.log(old.frequency / new.frequency) for old, new in zip(proof.modes, modes, strict=True)]
+    stretch = math.exp(sum(logarithms) / len(logarithms))
+    basis = Basis(modes, orders, proof.reference * stretch, proof.groups)
+    multipliers = basis.multipliers(np.array(proof.coefficients))
+    leads = (previous.duration - previous.times[::-1]) * stretch
+    found = confirmed(basis, leads, previous.amplitudes[::-1], multipliers, pivots=PIVOTS, steps=STEPS)
+    return None if found is None else proved(basis, found)
