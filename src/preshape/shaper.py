@@ -25,7 +25,8 @@ SUM_TOLERANCE = 1e-9
 
 COINCIDENT = 1e-9
 """Impulses closer than this fraction of the shaper's duration are one: set at their centroid, where moving them
-changes the residual only in second order (below 1e-15)."""
+changes the residual only in second order (below 1e-15). For opposite signs it would be first order: they must coincide
+to rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -266,7 +267,8 @@ def _merged(
     """Sorted impulses, coincident ones added up at their centroid."""
     order = np.argsort(times, kind="stable")
     t, a = times[order], amplitudes[order]
-    group = np.concatenate([[0], np.cumsum(np.diff(t) > COINCIDENT * max(float(t[-1]), np.finfo(float).tiny))])
+    nearness = np.where(a[1:] * a[:-1] > 0.0, COINCIDENT, np.finfo(float).eps) * max(float(t[-1]), np.finfo(float).tiny)
+    group = np.concatenate([[0], np.cumsum(np.diff(t) > nearness)])
     total = np.bincount(group, a)
     size = np.bincount(group, np.abs(a))
     first = t[np.flatnonzero(np.diff(group, prepend=-1.0))]

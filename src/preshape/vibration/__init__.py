@@ -1,5 +1,6 @@
 """What a shaper leaves: residual vibration, sensitivity curves and maps, insensitivity."""
 
+from preshape.vibration.high_frequency import HighFrequencyGain, high_frequency_gain
 from preshape.vibration.insensitivity import Insensitivity, insensitivity, tolerated_bands, total_insensitivity
 from preshape.vibration.residual import (
     Sensitivity,
@@ -10,9 +11,11 @@ from preshape.vibration.residual import (
 )
 
 __all__ = [
+    "HighFrequencyGain",
     "Insensitivity",
     "Sensitivity",
     "damping_sensitivity_curve",
+    "high_frequency_gain",
     "insensitivity",
     "residual_vibration",
     "sensitivity_curve",

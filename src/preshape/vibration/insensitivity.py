@@ -69,8 +69,6 @@ def tolerated_bands(
     list of (float, float)
         Band edges [Hz], in order.
     """
-    from scipy.optimize import brentq
-
     tolerance_of(tolerance)
     f_low, f_high = (float(value) for value in checked_frequency_and_damping([low, high], damping)[0])
     if f_high <= f_low:
@@ -80,7 +78,7 @@ def tolerated_bands(
     grid = np.linspace(f_low, f_high, count)
     slopes = slope(grid)
     turning = [
-        float(brentq(lambda f: float(slope(np.array([f]))[0]), grid[k], grid[k + 1], xtol=1e-15, rtol=8.9e-16))
+        _root(lambda f: float(slope(np.array([f]))[0]), grid[k], grid[k + 1])
         for k in np.flatnonzero((slopes[:-1] >= 0.0) != (slopes[1:] >= 0.0))
     ]
     nodes = np.unique([f_low, *turning, f_high])
@@ -92,17 +90,7 @@ def tolerated_bands(
         if ends[0] * ends[1] > 0.0:
             edges.append(float(nodes[k + int(above[k])]))  # the lower end only touches: it is the edge
         else:
-            edges.append(
-                float(
-                    brentq(
-                        lambda f: float(vibration(np.array([f]))[0]) - tolerance,
-                        nodes[k],
-                        nodes[k + 1],
-                        xtol=1e-15,
-                        rtol=8.9e-16,
-                    )
-                )
-            )
+            edges.append(_root(lambda f: float(vibration(np.array([f]))[0]) - tolerance, nodes[k], nodes[k + 1]))
     if not above[-1]:
         edges.append(f_high)
     return list(zip(edges[::2], edges[1::2], strict=True))
@@ -178,6 +166,20 @@ def total_insensitivity(
 
     area, _ = quad(width, z_low, z_high, epsabs=1e-7, epsrel=1e-6, limit=200)
     return float(area)
+
+
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
+    """The root between two frequencies at which, evaluated among others, the function had different signs.
+
+    Evaluated alone, a value that is only rounding (the slope on the top of an EI hump) can have the other sign: then
+    that end is the root.
+    """
+    from scipy.optimize import brentq
+
+    at_low, at_high = function(low), function(high)
+    if at_low * at_high > 0.0:
+        return float(low if abs(at_low) <= abs(at_high) else high)
+    return float(brentq(function, low, high, xtol=1e-15, rtol=8.9e-16))
 
 
 def _curve_functions(
