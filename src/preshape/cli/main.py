@@ -15,6 +15,7 @@ COMMANDS = {
     "design": "Design a shaper for known modes.",
     "analyze": "Show what a shaper does at its modes.",
     "shape": "Shape a command that lies in a CSV file.",
+    "reproduce": "Recompute what the papers print, with verdicts and figures.",
 }
 """Each in a module of its own, imported when it is called: help stays fast."""
 
