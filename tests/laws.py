@@ -12,7 +12,11 @@ DAMPINGS = (0.0, 0.01, 0.05, 0.1, 0.2, 0.3)
 
 @dataclass(frozen=True)
 class Family:
-    """A family and its promises: `order` vanishing derivatives at the mode (-1: none), humps of height `tolerance`."""
+    """A family and its promises: `order` vanishing derivatives at the mode (-1: none), humps of height `tolerance`.
+
+    Its impulses are positive, or of alternating sign if it is `negative`; for one mode their `partial_sums`, the shaped
+    unit step, stay within these bounds.
+    """
 
     name: str
     build: Callable[[Modes], Shaper]
@@ -20,6 +24,13 @@ class Family:
     humps: int = 0
     tolerance: float | None = None
     highest_damping: float = 0.3
+    negative: bool = False
+    partial_sums: tuple[float, float] = (0.0, 1.0)
+
+
+def _servo_period(modes: Modes) -> float:
+    """A grid that scales with the modes and does not fit them: 21 slots a period of the fastest [s]."""
+    return min(mode.damped_period for mode in modes) / 21.0
 
 
 FAMILIES = (
@@ -35,10 +46,20 @@ FAMILIES = (
     Family("two-hump ei 1 %", lambda modes: design.two_hump_ei(modes, 0.01), 0, 2, 0.01),
     Family("three-hump ei 5 %", design.three_hump_ei, -1, 3, 0.05),
     Family("four-hump ei 1 %", lambda modes: design.k_hump_ei(modes, 4, 0.01), 0, 4, 0.01),
+    Family("um_zv", design.um_zv, 0, negative=True),
+    Family("um_zvd", design.um_zvd, 1, negative=True),
+    Family("um_ei 5 %", design.um_ei, -1, 1, 0.05, negative=True),
+    Family("um_ei 1.25 %", lambda modes: design.um_ei(modes, 0.0125), -1, 1, 0.0125, negative=True),
+    Family("ps_zv", design.ps_zv, 0, negative=True, partial_sums=(-1.0, 1.0)),
+    Family("ps_zvd", design.ps_zvd, 1, negative=True, partial_sums=(-1.0, 1.0)),
+    Family("sna_zv 0.5", lambda modes: design.sna_zv(modes, 0.5), 0, negative=True, partial_sums=(0.25, 1.0)),
+    Family("sna_zv 1.5", lambda modes: design.sna_zv(modes, 1.5), 0, negative=True, partial_sums=(-0.25, 1.25)),
     Family("convolved zvd", design.convolved, 1),
     Family("direct, order 0", lambda modes: design.direct(modes, 0), 0),
     Family("direct, order 1", design.direct, 1),
     Family("direct, order 2", lambda modes: design.direct(modes, 2), 2),
+    Family("mesh", lambda modes: design.mesh(modes, _servo_period(modes)), 1),
+    Family("mesh, flattest", lambda modes: design.mesh(modes, _servo_period(modes), cost="second_derivative"), 1),
 )
 """Adding a family is adding a line."""
 

@@ -25,12 +25,15 @@ def damped(family: Family, damping: float) -> Shaper:
 
 
 @pytest.mark.parametrize(("family", "damping"), damped_cases(FAMILIES), ids=ids)
-def test_is_a_positive_shaper_of_gain_one(family: Family, damping: float) -> None:
+def test_is_a_shaper_of_gain_one_with_impulses_as_promised(family: Family, damping: float) -> None:
     shaper = damped(family, damping)
     assert shaper.times[0] == 0.0
     assert (np.diff(shaper.times) > 0.0).all()
-    assert (shaper.amplitudes > 0.0).all()
+    signs = (-1.0) ** np.arange(len(shaper)) if family.negative else np.ones(len(shaper))
+    np.testing.assert_array_equal(np.sign(shaper.amplitudes), signs)
     assert shaper.amplitudes.sum() == pytest.approx(1.0, abs=1e-14)
+    sums, (low, high) = np.cumsum(shaper.amplitudes), family.partial_sums
+    assert low - 1e-14 <= sums.min() and sums.max() <= high + 1e-14
 
 
 @pytest.mark.parametrize(("family", "damping"), damped_cases(ZERO_FAMILIES), ids=ids)
@@ -116,12 +119,18 @@ def test_a_file_gives_back_the_same_shaper_and_design(family: Family) -> None:
 @pytest.mark.parametrize("family", FAMILIES, ids=ids)
 def test_a_constant_command_stays_constant_and_a_step_arrives(family: Family) -> None:
     shaper, dt = family.build(SEVERAL), 0.013
+    rounding = 1e-14 * np.abs(shaper.amplitudes).sum()
     steady = shaper.shape(np.full(50, 3.25), dt, initial=3.25)
-    np.testing.assert_allclose(steady, 3.25, rtol=1e-14)
+    np.testing.assert_allclose(steady, 3.25, rtol=rounding)
     step = shaper.shape(np.ones(5), dt)
     assert step.size == 5 + math.ceil(shaper.duration / dt)
-    assert step[-1] == pytest.approx(1.0, abs=1e-14)
-    assert (np.diff(step) >= -1e-15).all()
+    assert step[-1] == pytest.approx(1.0, abs=rounding)
+    if family.negative:
+        settings = shaper.design.settings
+        assert settings["lowest_partial_sum"] - rounding <= step.min()
+        assert step.max() <= settings["highest_partial_sum"] + rounding
+    else:
+        assert (np.diff(step) >= -1e-15).all()
 
 
 @pytest.mark.parametrize("family", FAMILIES, ids=ids)
@@ -130,6 +139,6 @@ def test_the_design_says_what_was_asked_and_how_it_went(family: Family) -> None:
     assert shaper.design.modes == SEVERAL
     assert shaper.design.status in ("exact", "optimal")
     worst = max(float(residual_vibration(shaper, mode.frequency, mode.damping)) for mode in SEVERAL)
-    assert shaper.design.residual == worst
-    if shaper.design.status == "optimal":
+    assert shaper.design.residual == pytest.approx(worst, rel=1e-12, abs=1e-14)
+    if shaper.design.status == "optimal" and "proved" not in shaper.design.settings:  # on a grid: proved in words
         assert shaper.design.certificate is not None and shaper.design.certificate.holds

@@ -7,10 +7,11 @@ from typing import Any
 
 import click
 
+from preshape.band import Band
 from preshape.errors import InputError
 from preshape.mode import Mode
 
-__all__ = ["ModeOption", "RangeOption", "mode_option", "sample_rate_option", "tolerance_option"]
+__all__ = ["BandOption", "ModeOption", "mode_option", "sample_rate_option", "tolerance_option"]
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -36,20 +37,27 @@ class ModeOption(click.ParamType[Mode]):
             self.fail(str(error), param, ctx)
 
 
-class RangeOption(click.ParamType[tuple[float, float]]):
-    """LOW:HIGH."""
+class BandOption(click.ParamType[Band]):
+    """LOW:HIGH, with one damping ratio or two behind."""
 
-    name = "LO:HI"
+    name = "LO:HI[:Z[:Z]]"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, float]:
-        if isinstance(value, tuple):
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Band:
+        if isinstance(value, Band):
             return value
         parts = str(value).split(":")
         try:
-            low, high = (float(part) for part in parts)
+            numbers = [float(part) for part in parts]
         except ValueError:
-            self.fail(f"{value!r} is not LOW:HIGH in hertz: write 8:12.", param, ctx)
-        return low, high
+            numbers = []
+        if not 2 <= len(numbers) <= 4:
+            self.fail(
+                f"{value!r} is not LOW:HIGH[:DAMPING[:DAMPING]] in hertz: write 8:12 or 8:12:0.01:0.03.", param, ctx
+            )
+        try:
+            return Band(*numbers)
+        except InputError as error:
+            self.fail(str(error), param, ctx)
 
 
 def mode_option(help_text: str) -> Decorator:

@@ -8,9 +8,11 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from preshape.band import Band
 from preshape.engine import is_proved_shortest
 from preshape.report import Calibration, TextTable, candidate_table, exclusion_sentence, klipper_sentence, mode_table
 from preshape.shaper import Shaper
+from preshape.vibration import high_frequency_gain
 from preshape.workflow import Analysis
 
 __all__ = ["analysis_screen", "calibration_screen", "console", "shaper_screen"]
@@ -55,14 +57,19 @@ def shaper_screen(shaper: Shaper) -> None:
     )
     screen.print(_impulses(shaper))
     if design.modes is not None and design.residual is not None:
-        names = "; ".join(str(mode) for mode in design.modes)
+        bands = [str(Band(*band)) for band in design.settings.get("bands", ())]
+        names = "; ".join(bands or [str(mode) for mode in design.modes])
         screen.print(f"largest residual vibration at {names}: {100.0 * design.residual:.3g} %")
+    if (shaper.amplitudes < 0.0).any():
+        screen.print(Text(f"! {_excitation(shaper)}", style="bold yellow"))
     if design.certificate is not None:
         if is_proved_shortest(shaper):
             screen.print("proved shortest: no positive shaper with these constraints is shorter (certificate checked)")
         else:
             screen.print(Text("the certificate in this file does not hold: it proves nothing", style="bold yellow"))
-    elif "gap" in design.settings:
+    elif "proved" in design.settings:
+        screen.print(f"proved: {design.settings['proved']}")
+    elif design.settings.get("gap") is not None:
         screen.print(f"not proved shortest: a shorter one could save at most {100.0 * design.settings['gap']:.2g} %")
 
 
@@ -103,6 +110,19 @@ def _rich_table(title: str, table: TextTable, styles: list[str | None], left: in
     for row, style in zip(table.rows, styles, strict=True):
         drawn.add_row(*row, style=style)
     return drawn
+
+
+def _excitation(shaper: Shaper) -> str:
+    """What negative impulses do to modes that the shaper was not designed for."""
+    if shaper.design.modes is None:
+        bound = float(abs(shaper.amplitudes).sum())
+        return f"negative impulses excite up to {bound:.3g} x what the command does: check unmodelled modes"
+    known = [mode.frequency for mode in shaper.design.modes]
+    gain = high_frequency_gain(shaper, min(known), 10.0 * max(known))
+    return (
+        f"negative impulses excite up to {gain.value:.3g} x at {gain.frequency:.4g} Hz "
+        f"(searched {gain.low:.4g} - {gain.high:.4g} Hz): check unmodelled modes"
+    )
 
 
 def _impulses(shaper: Shaper) -> Table:

@@ -1,26 +1,51 @@
 """Modes and wishes in, a Shaper out; one family a file."""
 
+from preshape.design.antiperiod import AntiperiodAnalysis, antiperiod, antiperiod_analysis
 from preshape.design.band import ei_for_band
 from preshape.design.convolved import convolved
 from preshape.design.derivative import zv, zvd, zvdd, zvdk
 from preshape.design.direct import direct
 from preshape.design.ei import ei, k_hump_ei, three_hump_ei, two_hump_ei
 from preshape.design.families import CLOSED_FAMILIES, FAMILIES
+from preshape.design.mesh import interpreted, mesh, rounded, solved_from, squashed
 from preshape.design.mzv import mzv
 from preshape.design.on_grid import on_grid
+from preshape.design.partial_sum import ps_zv, ps_zvd
+from preshape.design.specified_insensitivity import bands_of_sets, specified_insensitivity
+from preshape.design.specified_negative_amplitude import sna_zv
+from preshape.design.symmetric import symmetric_three_modes, symmetric_two_modes
+from preshape.design.unity_magnitude import um_ei, um_zv, um_zvd
 
 __all__ = [
     "CLOSED_FAMILIES",
     "FAMILIES",
+    "AntiperiodAnalysis",
+    "antiperiod",
+    "antiperiod_analysis",
+    "bands_of_sets",
     "convolved",
     "direct",
     "ei",
     "ei_for_band",
+    "interpreted",
     "k_hump_ei",
+    "mesh",
     "mzv",
     "on_grid",
+    "ps_zv",
+    "ps_zvd",
+    "rounded",
+    "sna_zv",
+    "solved_from",
+    "specified_insensitivity",
+    "squashed",
+    "symmetric_three_modes",
+    "symmetric_two_modes",
     "three_hump_ei",
     "two_hump_ei",
+    "um_ei",
+    "um_zv",
+    "um_zvd",
     "zv",
     "zvd",
     "zvdd",

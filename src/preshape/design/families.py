@@ -9,6 +9,9 @@ from preshape.design.derivative import zv, zvd, zvdd, zvdk
 from preshape.design.direct import direct
 from preshape.design.ei import ei, k_hump_ei, three_hump_ei, two_hump_ei
 from preshape.design.mzv import mzv
+from preshape.design.partial_sum import ps_zv, ps_zvd
+from preshape.design.specified_negative_amplitude import sna_zv
+from preshape.design.unity_magnitude import um_ei, um_zv, um_zvd
 from preshape.errors import InputError
 from preshape.shaper import Shaper
 
@@ -25,6 +28,12 @@ CLOSED_FAMILIES: Mapping[str, Callable[..., Shaper]] = MappingProxyType(
         "two_hump_ei": two_hump_ei,
         "three_hump_ei": three_hump_ei,
         "k_hump_ei": k_hump_ei,
+        "um_zv": um_zv,
+        "um_zvd": um_zvd,
+        "um_ei": um_ei,
+        "ps_zv": ps_zv,
+        "ps_zvd": ps_zvd,
+        "sna_zv": sna_zv,
     }
 )
 """One mode at a time; several modes by convolution."""
