@@ -10,7 +10,8 @@ from collections.abc import Iterable
 
 from preshape.checks import whole_number
 from preshape.design.each_mode import recorded
-from preshape.engine import preferred, shortest_near, shortest_positive
+from preshape.design.symmetric import symmetric_two_modes
+from preshape.engine import convolved_positive, preferred, shortest_from, shortest_near, shortest_positive
 from preshape.errors import InputError
 from preshape.mode import Modes, ModesLike
 from preshape.provenance import Design
@@ -19,6 +20,9 @@ from preshape.shaper import Shaper
 __all__ = ["direct"]
 
 HIGHEST_ORDER = 6
+
+DISTINCT, REACH = 1.01, 2.99
+"""Ratios of two frequencies between which the symmetric closed form is taken; at 1 and 3 its equations degenerate."""
 
 
 def direct(
@@ -71,6 +75,9 @@ def direct(
     if near is not None:
         found = shortest_near(wanted, orders, _checked(near, wanted))
         settings["start"] = "full" if found is None else "near"
+    closed_form = None if found is not None else _closed_form(wanted, orders)
+    if closed_form is not None:
+        found = shortest_from(wanted, orders, closed_form)
     if found is None:
         found = shortest_positive(wanted, orders)
     if prefer is not None:
@@ -81,6 +88,17 @@ def direct(
     status = "feasible" if found.certificate is None else "optimal"
     shaper = Shaper.normalised(found.times, found.amplitudes)
     return recorded(shaper, Design("direct", wanted, settings, status, certificate=found.certificate))
+
+
+def _closed_form(modes: Modes, orders: tuple[int, ...]) -> Shaper | None:
+    """What is known to be the shortest without a search, still to be proved: one mode; two that are near enough."""
+    if len(modes) == 1:
+        return convolved_positive(modes, orders)
+    if len(modes) == 2 and orders in ((0, 0), (1, 1)) and modes[0].damping == modes[1].damping == 0.0:
+        low, high = sorted(mode.frequency for mode in modes)
+        if DISTINCT * low <= high < REACH * low:
+            return symmetric_two_modes(modes, orders[0])
+    return None
 
 
 def _checked(near: Shaper, modes: Modes) -> Shaper:

@@ -29,6 +29,7 @@ __all__ = [
     "ServoGrid",
     "VibrationAtMost",
     "ZeroVibration",
+    "deflection_at_most",
 ]
 
 
@@ -210,6 +211,38 @@ class AtMostImpulses:
     def rows(self, leads: NDArray[np.float64]) -> Rows:
         """Nothing linear: integers decide (engine/fewest.py)."""
         return Rows()
+
+
+def deflection_at_most(mode: Mode, limit: float, sample_time: float) -> ResponseBetween:
+    """The deflection of a mode that sets off at a shaped constant speed, at most `limit` of the unshaped, both ways.
+
+    The deflection is d = r - x of a mass on a spring and a damper that act on the error (a positioned arm, a payload on
+    its rope): d'' + 2 z w d' + w^2 d = r''. Setting off at speed v without a shaper, it peaks at (v / w) exp(-s phi),
+    cos(phi) = z, s = z / sqrt(1 - z^2).
+
+    Parameters
+    ----------
+    mode : Mode
+        Frequency [Hz] and damping ratio [-].
+    limit : float
+        Largest deflection [-], as a fraction of the unshaped peak.
+    sample_time : float
+        Distance of the times at which it is asked [s].
+
+    References
+    ----------
+    Robertson, section III (SD-ZV shapers).
+    """
+    if not (math.isfinite(limit) and limit > 0.0):
+        raise InputError(f"the deflection limit is {limit:g}: give a fraction of the unshaped peak, such as 0.4.")
+    rate, turn, root = mode.damping * mode.omega, mode.omega_d, math.sqrt(1.0 - mode.damping**2)
+    peak = root * math.exp(-mode.damping / root * math.acos(mode.damping))
+
+    def response(t: NDArray[np.float64]) -> NDArray[np.float64]:
+        wave: NDArray[np.float64] = np.exp(-rate * t) * np.sin(turn * t) / peak
+        return wave
+
+    return ResponseBetween(response, -limit, limit, sample_time)
 
 
 def _between(rows: NDArray[np.float64], low: float, high: float) -> Rows:

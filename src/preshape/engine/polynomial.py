@@ -44,9 +44,9 @@ class Polynomial:
         offset: float = 0.0,
     ) -> None:
         self._basis, self._rates, self._offset = basis, -rates, offset
-        own = [] if basis is None else basis.weights(multipliers, 3)
+        own = [] if basis is None else basis.weights(multipliers, 4)
         self._weights: list[NDArray[np.float64]] = []
-        for n in range(4):
+        for n in range(5):
             wave = waves * (-rates.conj()) ** n
             self._weights.append(np.concatenate(([own[n]] if own else []) + [wave.real, wave.imag]))
         fastest = float(np.abs(rates.imag).max()) / (2.0 * math.pi) if rates.size else 0.0
@@ -75,22 +75,28 @@ class Polynomial:
         """Leads [s] of all local minima on [0, stop], both ends included, the values there, and the largest |p|.
 
         Between neighbouring roots of p'' the slope is monotone, so none of its roots is missed there; samples alone
-        would miss a minimum beside a maximum, which is what flat certificates have. `precision` is that of the leads,
-        relative to `stop`; minima that are near the `expected` leads are found sooner.
+        would miss a minimum beside a maximum, which is what flat certificates have. Roots of p'' may hide beside each
+        other in the same way, and are told apart by those of p'''. `precision` is that of the leads, relative to
+        `stop`; minima that are near the `expected` leads are found sooner.
         """
         samples = self.samples(stop)
         rows = self._rows(samples)
-        values, slopes, bends = (self._weights[n] @ rows for n in range(3))
-        # an extremum hides between two samples only where the slope is nearly zero beside a root of its own slope
+        values, slopes, bends, thirds = (self._weights[n] @ rows for n in range(4))
         step = float(samples[1] - samples[0])
-        near = np.minimum(np.abs(slopes[:-1]), np.abs(slopes[1:]))
-        near = near <= step * np.maximum(np.abs(bends[:-1]), np.abs(bends[1:]))
-        change = np.flatnonzero(((bends[:-1] >= 0.0) != (bends[1:] >= 0.0)) & near)
-        turning = self._refined(2, samples[change], samples[change + 1], BRACKET * stop)
-        nodes = np.concatenate([samples, turning])
-        rising = np.concatenate([slopes, self._weights[1] @ self._rows(turning)]) >= 0.0
-        order = np.argsort(nodes, kind="stable")
-        nodes, rising = nodes[order], rising[order]
+        # an extremum hides between two samples only where the slope is nearly zero, and its own slope too
+        bend, third = _larger(bends), _larger(thirds)
+        near = _smaller(slopes) <= step * (bend + step * third)
+        hidden = np.flatnonzero(_changes(thirds) & near & (_smaller(bends) <= 2.0 * step * third))
+        between = self._refined(3, samples[hidden], samples[hidden + 1], BRACKET * stop)
+        nodes, order = _sorted(samples, between)
+        rows = self._rows(between)
+        bends = np.concatenate([bends, self._weights[2] @ rows])[order]
+        slopes = np.concatenate([slopes, self._weights[1] @ rows])[order]
+        near = np.concatenate([near, [False], np.ones(between.size, dtype=bool)])[order]
+        change = np.flatnonzero(_changes(bends) & near[:-1])
+        turning = self._refined(2, nodes[change], nodes[change + 1], BRACKET * stop)
+        nodes, order = _sorted(nodes, turning)
+        rising = np.concatenate([slopes, self._weights[1] @ self._rows(turning)])[order] >= 0.0
         turns = np.flatnonzero(~rising[:-1] & rising[1:])
         inner = self._refined(1, nodes[turns], nodes[turns + 1], precision * stop, expected)
         found = np.unique(np.concatenate([[0.0], inner, [stop]]))
@@ -125,3 +131,27 @@ class Polynomial:
             if moved <= precision:
                 break
         return guess
+
+
+def _sorted(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """Both in rising order, and the order of their concatenation that makes it so."""
+    both = np.concatenate([first, second])
+    order = np.argsort(both, kind="stable")
+    return both[order], order
+
+
+def _changes(values: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether the sign changes from each value to the next."""
+    positive = values >= 0.0
+    changes: NDArray[np.bool_] = positive[:-1] != positive[1:]
+    return changes
+
+
+def _smaller(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The smaller magnitude of each value and the next."""
+    return np.minimum(np.abs(values[:-1]), np.abs(values[1:]))
+
+
+def _larger(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The larger magnitude of each value and the next."""
+    return np.maximum(np.abs(values[:-1]), np.abs(values[1:]))

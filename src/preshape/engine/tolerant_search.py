@@ -103,7 +103,8 @@ def trial_at(asked: Asked, duration: float, points: Sequence[Point] = ()) -> Tri
         raise InputError(
             f"the bands from {asked.lowest:g} to {asked.fastest:g} Hz are too wide: a shaper of {duration:.3g} s, "
             f"which is not enough for them yet, has {leads.size} possible impulses and {len(now)} points to check; "
-            f"narrow them to a ratio of {WIDEST:g} or so between the highest and the lowest frequency, or raise the tolerance."
+            f"narrow them to a ratio of {WIDEST:g} or so between the highest and the lowest frequency, or raise the "
+            "tolerance."
         )
     basis: Basis | None = None
     for _ in range(MAXIMUM_EXCHANGES):
