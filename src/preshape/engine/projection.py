@@ -113,13 +113,14 @@ def nearest_on_mesh(
 
 def project(basis: Basis, leads: NDArray[np.float64], stop: float, gap: float = GAP) -> Projection:
     """The nearest measure on the whole interval [0, stop], starting from a mesh of `leads` [s]."""
-    nearest = nearest_on(basis, leads)
-    for _ in range(MAXIMUM_EXCHANGES):
+    nearest, before = nearest_on(basis, leads), np.inf
+    for left in range(MAXIMUM_EXCHANGES - 1, -1, -1):
         if nearest.feasible:
             break
         minima, values, _ = Polynomial(basis, nearest.multipliers).minima(stop, EXCHANGED)
         nearest = replace(nearest, separation=float(values.min()))
-        if nearest.separation >= nearest.distance * (1.0 - gap):
-            break
+        if nearest.separation >= nearest.distance * (1.0 - gap) or nearest.distance >= before or not left:
+            break  # near enough; or rounding, and the exchange would go round in circles
+        before = nearest.distance
         nearest = nearest_on(basis, np.unique(np.concatenate([nearest.leads, minima])))
     return nearest
