@@ -8,12 +8,12 @@ CORE   := $(VENV)/core.stamp
 DEV    := $(VENV)/dev.stamp
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format docs bench lock clean
+.PHONY: help demo test lint format docs figures bench lock clean
 
 help:
 	@echo "make demo    from a measurement to a shaper and its report, in demo-report/"
 	@echo "make test    the tests          make lint   style, types, rooms of the house"
-	@echo "make docs    the documentation  make bench  the benchmarks"
+	@echo "make docs    the documentation  make bench  the benchmarks (make figures: the theory page's)"
 	@echo "make lock    renew the lock files (needs uv)"
 
 demo: $(CORE)
@@ -35,6 +35,9 @@ format: $(DEV)
 docs: $(DEV)
 	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
+
+figures: $(DEV)
+	$(BIN)/python docs/figures/make_figures.py
 
 bench: $(DEV)
 	$(BIN)/python benchmarks/run_all.py

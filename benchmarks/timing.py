@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from typing import TypeVar
 
-__all__ = ["best_of", "row"]
+__all__ = ["best_of", "once", "row"]
+
+T = TypeVar("T")
 
 
 def best_of(function: Callable[[], object], runs: int = 7, at_least: float = 0.05) -> float:
@@ -21,6 +24,13 @@ def best_of(function: Callable[[], object], runs: int = 7, at_least: float = 0.0
             function()
         best = min(best, (time.perf_counter() - start) / count)
     return best
+
+
+def once(function: Callable[[], T]) -> tuple[T, float]:
+    """What a call returns, and the seconds it took: for what takes long, or is wanted too."""
+    start = time.perf_counter()
+    value = function()
+    return value, time.perf_counter() - start
 
 
 def row(what: str, ours: float, peer: str, theirs: float, claim: str) -> None:

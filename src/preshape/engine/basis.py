@@ -98,10 +98,12 @@ class Basis:
     def _with_exponentials(self, leads: NDArray[np.float64]) -> None:
         nodes = [[self._rates[i] for i in group for _ in range(self.orders[i] + 1)] for group in self.groups]
         self._functions = DividedExponentials(nodes, self.duration)
-        slope = self._functions.derivative
-        self._derivative = np.block([[slope.real, -slope.imag], [slope.imag, slope.real]])
+        slope, size = self._functions.derivative, self._functions.size
+        self._derivative = np.empty((2 * size, 2 * size))
+        self._derivative[:size, :size] = self._derivative[size:, size:] = slope.real
+        self._derivative[:size, size:], self._derivative[size:, :size] = -slope.imag, slope.imag
         phase = 1.0 + np.multiply.outer(np.abs(self._functions.rates), leads)
-        self._orthonormalise(self.raw(leads), np.eye(2 * self._functions.size), np.concatenate([phase, phase]))
+        self._orthonormalise(self.raw(leads), np.eye(2 * size), np.concatenate([phase, phase]))
 
     def _with_series(self, leads: NDArray[np.float64]) -> None:
         self._functions = None
@@ -116,7 +118,10 @@ class Basis:
     ) -> None:
         """The transform from raw functions at even leads to orthonormal rows, and what rounding does to these."""
         triangle = np.asarray(np.linalg.qr((combine @ raw).T, mode="r"))
-        self._transform = (_inverse_transposed(triangle) @ combine) * math.sqrt(raw.shape[1])
+        scale = math.sqrt(raw.shape[1])
+        self._transform = (_inverse_transposed(triangle) @ combine) * scale
+        self._back = (triangle @ combine) / scale
+        self._slopes = [self._transform]
         self.size = int(self._transform.shape[0])
         spread = np.abs(self._transform) @ (np.abs(raw) * phase)
         self.rounding = float(np.finfo(float).eps * spread.max())
@@ -141,10 +146,9 @@ class Basis:
 
     def slopes(self, raw: NDArray[np.float64], derivative: int) -> NDArray[np.float64]:
         """d^n g / du^n from what :meth:`raw` gave, shape (row, lead) [1/s^n]."""
-        transform = self._transform
-        for _ in range(derivative):
-            transform = transform @ self._derivative
-        values: NDArray[np.float64] = transform @ raw
+        while len(self._slopes) <= derivative:
+            self._slopes.append(self._slopes[-1] @ self._derivative)
+        values: NDArray[np.float64] = self._slopes[derivative] @ raw
         return values
 
     def values(self, raw: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -161,9 +165,9 @@ class Basis:
     def coefficients(self, multipliers: NDArray[np.float64]) -> tuple[complex, ...]:
         """multipliers . g(u) as c_n of Re sum c_n phi_n(u), phi the divided exponentials or Chebyshev polynomials."""
         if self._functions is None:
-            return tuple(complex(value) for value in multipliers @ self._transform)
-        real, imaginary = np.split(self._transform.T @ multipliers, 2)
-        return tuple(complex(value) for value in real - 1j * imaginary)
+            return tuple((multipliers @ self._transform).astype(complex).tolist())
+        plain, size = multipliers @ self._transform, self._functions.size
+        return tuple((plain[:size] - 1j * plain[size:]).tolist())
 
     def multipliers(self, coefficients: NDArray[np.complex128]) -> NDArray[np.float64]:
         """The inverse of :meth:`coefficients`, scaled to length one; zeros when they are no combination of the rows."""
@@ -173,8 +177,8 @@ class Basis:
                 return np.zeros(self.size)
         else:
             plain = np.concatenate([coefficients.real, -coefficients.imag])
-        found: NDArray[np.float64] = np.asarray(np.linalg.lstsq(self._transform.T, plain, rcond=None)[0], dtype=float)
-        miss = float(np.abs(self._transform.T @ found - plain).max())
+        found: NDArray[np.float64] = self._back @ plain
+        miss = float(np.abs(found @ self._transform - plain).max())
         length = float(np.linalg.norm(found))
         if length == 0.0 or miss > IN_SPAN * float(np.abs(plain).max()):
             return np.zeros(self.size)

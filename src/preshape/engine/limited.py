@@ -198,7 +198,8 @@ def _exact(
         leads=leads,
         amplitudes=amplitudes,
         multipliers=np.zeros(0),
-        waves=(lengths * phases)[keep] / np.linalg.norm(lengths[keep]),
+        sizes=lengths[keep] / np.linalg.norm(lengths[keep]),
+        phases=np.angle(phases[keep]),
         edges=tuple(peak.edge for peak, kept in zip(touching, keep, strict=True) if kept),
         places=np.array([peak.w for peak, kept in zip(touching, keep, strict=True) if kept]),
     )

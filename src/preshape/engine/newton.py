@@ -2,8 +2,9 @@
 
 Unknown are a_1..a_N, the leads u_2..u_N (u_1 = 0) and c in R^m; the equations are
   sum a_i g(u_i) = 0, sum a_i = 1;  p(u) = c.g(u): p(u_i) = 0 for all i, p'(u_i) = 0 for the interior ones;  |c| = 1.
-One of them is redundant (sum a_i p(u_i) = 0), so p(u_N) = 0 is left out and the system is square. Harmonics drop the
-rank further: then, and only then, a step is the least-squares one.
+One of them is redundant (sum a_i p(u_i) = 0), so p(u_k) = 0 is left out for the largest impulse k, where the others
+determine it best, and the system is square. Harmonics drop the rank further: then, and only then, a step is the
+least-squares one.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ MAXIMUM_STEPS = 40
 LARGEST_MOVE = 0.3
 """No impulse moves by more than this fraction of the smallest gap in one step, so that the order is kept."""
 
-SINGULAR = 1e-13
+SINGULAR = 1e-14
 """A reciprocal condition number below this calls for the least-squares step."""
 
 STILL = 1e-8
@@ -92,6 +93,8 @@ def polish(
     count, size = u.size, basis.size
     best = Polished(u, a, c, np.inf)
     total, unknown = size + 2 * count - 1, np.arange(count)
+    others = np.delete(unknown, int(np.argmax(a)))
+    moving = np.flatnonzero(others)
     touching, flat = slice(size + 1, size + count), slice(size + count, total - 1)
     jacobian = np.zeros((total, total))
     jacobian[size, :count] = 1.0
@@ -102,7 +105,7 @@ def polish(
         g, slope, curve = basis.values(raw), basis.slopes(raw, 1) * scale, basis.slopes(raw, 2) * scale**2
         p_slope = c @ slope
         equations[:size], equations[size], equations[-1] = g @ a, a.sum() - 1.0, c @ c - 1.0
-        equations[touching], equations[flat] = (c @ g)[:-1], p_slope[1:-1]
+        equations[touching], equations[flat] = (c @ g)[others], p_slope[1:-1]
         error = float(np.abs(equations).max()) / basis.rounding
         stalled = 0 if error < 0.5 * best.error else stalled + 1
         if error < best.error:
@@ -113,8 +116,8 @@ def polish(
             break
         jacobian[:size, :count] = g
         jacobian[:size, count : 2 * count - 1] = (slope * a)[:, 1:]
-        jacobian[touching, 2 * count - 1 :] = g.T[:-1]
-        jacobian[unknown[1:-1] + size + 1, unknown[1:-1] + count - 1] = p_slope[1:-1]
+        jacobian[touching, 2 * count - 1 :] = g.T[others]
+        jacobian[moving + size + 1, others[moving] + count - 1] = p_slope[others[moving]]
         jacobian[flat, 2 * count - 1 :] = slope.T[1:-1]
         jacobian[unknown[1:-1] + size + count - 1, unknown[1:-1] + count - 1] = (c @ curve)[1:-1]
         jacobian[-1, 2 * count - 1 :] = 2.0 * c
@@ -148,13 +151,19 @@ def settled(basis: Basis, polished: Polished) -> Polished:
 
 
 def _step(jacobian: NDArray[np.float64], equations: NDArray[np.float64]) -> NDArray[np.float64]:
-    """-J^-1 e by elimination, or the least-squares step when J is singular to working precision."""
+    """-J^-1 e by elimination, or the least-squares step when J is singular to working precision.
+
+    Columns are scaled to length one first: leads of tiny impulses have short ones, which are small, but not dependent.
+    """
     from scipy.linalg.lapack import dgecon, dgetrf, dgetrs
 
-    factors, pivots, trouble = dgetrf(jacobian)
+    lengths = np.linalg.norm(jacobian, axis=0)
+    lengths = np.where(lengths > 0.0, lengths, 1.0)
+    scaled = jacobian / lengths
+    factors, pivots, trouble = dgetrf(scaled)
     if trouble == 0:
-        reciprocal, _ = dgecon(factors, np.abs(jacobian).sum(axis=0).max())
+        reciprocal, _ = dgecon(factors, np.abs(scaled).sum(axis=0).max())
         if reciprocal > SINGULAR:
             solution, _ = dgetrs(factors, pivots, equations)
-            return np.asarray(-solution)
-    return np.asarray(-np.linalg.lstsq(jacobian, equations, rcond=RANK_TOLERANCE)[0])
+            return np.asarray(-solution / lengths)
+    return np.asarray(-np.linalg.lstsq(scaled, equations, rcond=RANK_TOLERANCE)[0] / lengths)

@@ -46,9 +46,10 @@ class Polynomial:
         self._basis, self._rates, self._offset = basis, -rates, offset
         own = [] if basis is None else basis.weights(multipliers, 4)
         self._weights: list[NDArray[np.float64]] = []
-        for n in range(5):
+        for n in range(5 if rates.size else 0):
             wave = waves * (-rates.conj()) ** n
             self._weights.append(np.concatenate(([own[n]] if own else []) + [wave.real, wave.imag]))
+        self._weights = self._weights or own
         fastest = float(np.abs(rates.imag).max()) / (2.0 * math.pi) if rates.size else 0.0
         self._fastest = fastest if basis is None else max(fastest, max(mode.frequency for mode in basis.modes))
         self._functions = rates.size + (0 if basis is None else basis.size // 2)
@@ -83,39 +84,58 @@ class Polynomial:
         rows = self._rows(samples)
         values, slopes, bends, thirds = (self._weights[n] @ rows for n in range(4))
         step = float(samples[1] - samples[0])
-        # an extremum hides between two samples only where the slope is nearly zero, and its own slope too
+        # an extremum hides between two samples only where the slope is nearly zero, and its own slope too; a function of
+        # one sign at both ends whose derivative changes its sign once comes nearer to zero only if it sets out that way
         bend, third = _larger(bends), _larger(thirds)
         near = _smaller(slopes) <= step * (bend + step * third)
-        hidden = np.flatnonzero(_changes(thirds) & near & (_smaller(bends) <= 2.0 * step * third))
-        between = self._refined(3, samples[hidden], samples[hidden + 1], BRACKET * stop)
-        nodes, order = _sorted(samples, between)
-        rows = self._rows(between)
-        bends = np.concatenate([bends, self._weights[2] @ rows])[order]
-        slopes = np.concatenate([slopes, self._weights[1] @ rows])[order]
-        near = np.concatenate([near, [False], np.ones(between.size, dtype=bool)])[order]
-        change = np.flatnonzero(_changes(bends) & near[:-1])
-        turning = self._refined(2, nodes[change], nodes[change + 1], BRACKET * stop)
-        nodes, order = _sorted(nodes, turning)
-        rising = np.concatenate([slopes, self._weights[1] @ self._rows(turning)])[order] >= 0.0
-        turns = np.flatnonzero(~rising[:-1] & rising[1:])
-        inner = self._refined(1, nodes[turns], nodes[turns + 1], precision * stop, expected)
+        hidden = near & (_smaller(bends) <= 2.0 * step * third) & _dips(bends, thirds)
+        nodes, bends, slopes, near = self._with_nodes(
+            samples, self._refined(3, samples, thirds, np.flatnonzero(hidden), BRACKET * stop), bends, slopes, near
+        )
+        turning = self._refined(2, nodes, bends, np.flatnonzero(near & _dips(slopes, bends)), BRACKET * stop)
+        nodes, _, slopes, _ = self._with_nodes(nodes, turning, bends, slopes, near)
+        turns = np.flatnonzero((slopes[:-1] < 0.0) & (slopes[1:] >= 0.0))
+        inner = self._refined(1, nodes, slopes, turns, precision * stop, expected)
         found = np.unique(np.concatenate([[0.0], inner, [stop]]))
         return found, self(found), float(np.abs(values - self._offset).max())
+
+    def _with_nodes(
+        self,
+        nodes: NDArray[np.float64],
+        more: NDArray[np.float64],
+        bends: NDArray[np.float64],
+        slopes: NDArray[np.float64],
+        near: NDArray[np.bool_],
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+        """Nodes in order with `more` among them, p'' and p' there, and whether the interval from each may hide a root."""
+        if more.size == 0:
+            return nodes, bends, slopes, near
+        rows, every = self._rows(more), np.concatenate([nodes, more])
+        order = np.argsort(every, kind="stable")
+        bends = np.concatenate([bends, self._weights[2] @ rows])[order]
+        slopes = np.concatenate([slopes, self._weights[1] @ rows])[order]
+        near = np.concatenate([near, [False], np.ones(more.size, dtype=bool)])[order][:-1]
+        return every[order], bends, slopes, near
 
     def _refined(
         self,
         derivative: int,
-        low: NDArray[np.float64],
-        high: NDArray[np.float64],
+        nodes: NDArray[np.float64],
+        values: NDArray[np.float64],
+        change: NDArray[np.intp],
         precision: float,
         expected: NDArray[np.float64] | None = None,
     ) -> NDArray[np.float64]:
-        """The root of the n-th derivative in each bracket: Newton steps that bisection keeps inside."""
+        """The root of the n-th derivative after each node `change`: Newton steps that bisection keeps inside.
+
+        `values` are the derivative's at the nodes, and change their sign there.
+        """
+        low, high = nodes[change], nodes[change + 1]
         if low.size == 0:
             return low
         value_of, slope_of = self._weights[derivative], self._weights[derivative + 1]
-        sign = np.where(value_of @ self._rows(high) >= 0.0, 1.0, -1.0)
-        guess = 0.5 * (low + high)
+        sign = np.where(values[change + 1] >= 0.0, 1.0, -1.0)
+        guess = low + (high - low) * (values[change] / (values[change] - values[change + 1]))
         if expected is not None and expected.size:
             nearest = expected[np.minimum(np.searchsorted(expected, low), expected.size - 1)]
             guess = np.where((nearest >= low) & (nearest <= high), nearest, guess)
@@ -133,18 +153,13 @@ class Polynomial:
         return guess
 
 
-def _sorted(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Both in rising order, and the order of their concatenation that makes it so."""
-    both = np.concatenate([first, second])
-    order = np.argsort(both, kind="stable")
-    return both[order], order
-
-
-def _changes(values: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether the sign changes from each value to the next."""
-    positive = values >= 0.0
-    changes: NDArray[np.bool_] = positive[:-1] != positive[1:]
-    return changes
+def _dips(values: NDArray[np.float64], slopes: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether |values| falls after each node and rises again before the next, without a change of their sign."""
+    positive, rising = values >= 0.0, slopes >= 0.0
+    dips: NDArray[np.bool_] = (
+        (positive[:-1] == positive[1:]) & (rising[:-1] != rising[1:]) & (positive[:-1] != rising[:-1])
+    )
+    return dips
 
 
 def _smaller(values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -31,6 +31,9 @@ SUPPORT = 1e-14
 
 MAXIMUM_EXCHANGES = 40
 
+STALLED = 3
+"""So many exchanges in a row that come no nearer: the rest is rounding, and they would go round in circles."""
+
 
 @dataclass(frozen=True)
 class Projection:
@@ -83,44 +86,53 @@ def nearest_on(basis: Basis, leads: NDArray[np.float64], rows: NDArray[np.float6
 
 
 def nearest_on_mesh(
-    basis: Basis, mesh: NDArray[np.float64], rows: NDArray[np.float64], start: NDArray[np.intp]
+    basis: Basis,
+    mesh: NDArray[np.float64],
+    rows: NDArray[np.float64],
+    start: NDArray[np.intp],
+    gap: float = MESH_GAP,
 ) -> tuple[Projection, NDArray[np.intp]]:
     """The nearest measure on a `mesh` of leads [s] with `rows` g there, by exchange from the points `start` (indices).
 
     Least squares over few points, then the places where the polynomial comes lower than its bound join them, until
-    there is none on the mesh: the same answer as :func:`nearest_on`, in a fraction of its time. Also the indices used.
+    there is none on the mesh: the same answer as :func:`nearest_on`, in a fraction of its time. The fraction
+    `gap` of its bound may be missing. Also the indices of the impulses.
     """
     chosen, before = np.unique(start), np.inf
     for _ in range(MAXIMUM_EXCHANGES):
         nearest = nearest_on(basis, mesh[chosen], rows[:, chosen])
         if nearest.feasible:
-            return nearest, chosen
+            return nearest, np.searchsorted(mesh, nearest.leads)
         if nearest.distance >= before:
             break  # rounding: the exchange would go round in circles
         before = nearest.distance
         p = nearest.multipliers @ rows
-        low = p < nearest.distance * (1.0 - MESH_GAP)
+        if p.min() >= nearest.distance * (1.0 - gap):
+            return nearest, np.searchsorted(mesh, nearest.leads)
+        low = p < nearest.distance
         low[1:] &= p[1:] <= p[:-1]
         low[:-1] &= p[:-1] <= p[1:]
         low[chosen] = False
         if not low.any():
-            return nearest, chosen
-        used = np.searchsorted(mesh, nearest.leads)
-        chosen = np.union1d(used, np.flatnonzero(low))
-    everything = nearest_on(basis, mesh, rows)
-    return everything, np.searchsorted(mesh, everything.leads)
+            return nearest, np.searchsorted(mesh, nearest.leads)
+        chosen = np.union1d(np.searchsorted(mesh, nearest.leads), np.flatnonzero(low))
+    nearest = nearest_on(basis, mesh, rows)
+    return nearest, np.searchsorted(mesh, nearest.leads)
 
 
 def project(basis: Basis, leads: NDArray[np.float64], stop: float, gap: float = GAP) -> Projection:
     """The nearest measure on the whole interval [0, stop], starting from a mesh of `leads` [s]."""
-    nearest, before = nearest_on(basis, leads), np.inf
-    for left in range(MAXIMUM_EXCHANGES - 1, -1, -1):
+    nearest = best = nearest_on(basis, leads)
+    closest, stalled = np.inf, 0
+    for _ in range(MAXIMUM_EXCHANGES):
         if nearest.feasible:
-            break
+            return nearest
         minima, values, _ = Polynomial(basis, nearest.multipliers).minima(stop, EXCHANGED)
         nearest = replace(nearest, separation=float(values.min()))
-        if nearest.separation >= nearest.distance * (1.0 - gap) or nearest.distance >= before or not left:
-            break  # near enough; or rounding, and the exchange would go round in circles
-        before = nearest.distance
+        best = nearest if nearest.separation >= best.separation else best
+        stalled = 0 if nearest.distance < closest else stalled + 1
+        if nearest.separation >= nearest.distance * (1.0 - gap) or stalled == STALLED:
+            break
+        closest = min(closest, nearest.distance)
         nearest = nearest_on(basis, np.unique(np.concatenate([nearest.leads, minima])))
-    return nearest
+    return best

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from preshape.engine.basis import Basis, plain_rows
 from preshape.engine.certify import certified
 from preshape.engine.newton import Polished, settled
-from preshape.engine.projection import Projection, nearest_on, nearest_on_mesh, project
+from preshape.engine.projection import GAP, Projection, nearest_on, nearest_on_mesh, project
 from preshape.engine.repair import confirmed
 from preshape.engine.unresolved import convolved_positive, halves, is_resolved, thinned
 from preshape.mode import Modes
@@ -38,6 +38,18 @@ ROOM = 1.06
 
 COARSE = 4
 """Every so many mesh points are a first guess at the impulses."""
+
+FEW = 12
+"""Up to so many modes the bound from leaving out single constraints is worth its time."""
+
+DECIDED = 0.5
+"""The exchange may stop when p falls short of its bound by less than this fraction: the interval is proved too short."""
+
+DROWNED = 100.0
+"""For dense modes a distance below this many zeros, one point below the mesh's shortest duration, is all rounding."""
+
+ROUGH = 0.1
+"""Relative width of a bracket that is narrow enough to change to functions on a shorter interval."""
 
 MUCH_SHORTER = 0.8
 """A duration of less than this part of the mesh calls for functions that are orthonormal on the shorter interval."""
@@ -98,6 +110,8 @@ def shortest_positive(modes: Modes, orders: tuple[int, ...]) -> Shortest:
     bracket = _bracketed(modes, orders, max(lengths), sum(lengths))
     if not is_resolved(bracket.basis):
         return _unresolved(modes, orders)
+    if not bracket.basis.groups and bracket.nearest.distance < DROWNED * bracket.basis.zero:
+        return _drowned(bracket)
     too_short = 0.0
     for basis, nearest, width, excluded in _starts(bracket):
         too_short = max(too_short, excluded)
@@ -110,6 +124,14 @@ def shortest_positive(modes: Modes, orders: tuple[int, ...]) -> Shortest:
     return _feasible(bracket, too_short)
 
 
+def _drowned(bracket: _Bracket) -> Shortest:
+    """One try at the optimum where rounding hides how far below it a duration is; else what remains certain."""
+    basis, step = bracket.basis, float(bracket.mesh[1])
+    leads, amplitudes = _clustered(bracket.nearest, SAME_IMPULSE[0] * step)
+    found = confirmed(basis, leads, amplitudes, bracket.nearest.multipliers, pivots=1, steps=12)
+    return proved(basis, found) if found is not None else _unresolved(basis.modes, basis.orders)
+
+
 def proved(basis: Basis, polished: Polished) -> Shortest:
     """The exact shaper with its certificate."""
     exact = settled(basis, polished)
@@ -118,36 +140,56 @@ def proved(basis: Basis, polished: Polished) -> Shortest:
     return Shortest(times, exact.amplitudes[::-1], certificate, 0.0)
 
 
-def _bracketed(modes: Modes, orders: tuple[int, ...], longest: float, convolved: float) -> _Bracket:
-    """Bisection over the mesh: durations up to `longest` are too short, the `convolved` one is enough [s]."""
+def _bracketed(
+    modes: Modes, orders: tuple[int, ...], longest: float, convolved: float, expected: float = math.inf
+) -> _Bracket:
+    """Search over the mesh: durations up to `longest` are too short, the `convolved` one is enough [s]."""
     fastest = max(mode.frequency for mode in modes)
     reach = ROOM * convolved
     for _ in range(MAXIMUM_REACHES):
         mesh = np.linspace(0.0, reach, math.ceil(MESH_PER_PERIOD * fastest * reach) + 8)
         basis = Basis(modes, orders, reach)
         rows = basis(mesh)
-        enough, used = nearest_on_mesh(basis, mesh, rows, np.arange(0, mesh.size, COARSE))
-        if enough.feasible:
+        nearest, used = nearest_on_mesh(basis, mesh, rows, np.arange(0, mesh.size, COARSE))
+        if nearest.feasible:
             break
         reach *= 1.2
+
+    def nearest_until(last: int, gap: float) -> tuple[Projection, NDArray[np.intp]]:
+        return nearest_on_mesh(basis, mesh[: last + 1], rows[:, : last + 1], _stretched(used, last), gap)
+
     low, high = int(longest * (1.0 - 1e-9) / mesh[1]), mesh.size - 1
-    nearest, _ = nearest_on_mesh(basis, mesh[: low + 1], rows[:, : low + 1], _within(low, used))
-    while high - low > 1:
-        middle = (low + high) // 2
-        trial, used = nearest_on_mesh(basis, mesh[: middle + 1], rows[:, : middle + 1], _within(middle, used))
-        if trial.feasible:
+    predicted, halved = expected / mesh[1], True
+    while high - low > 1 and not (_much_shorter(float(mesh[high]), basis) and high - low < ROUGH * high):
+        width, middle = high - low, (low + high) // 2
+        if predicted < (high if halved else low + 1):
+            middle = max(int(predicted), low + 1)
+        nearest, used = nearest_until(middle, DECIDED)
+        if nearest.feasible:
             high = middle
         else:
-            low, nearest = middle, trial
-    if mesh[high] < MUCH_SHORTER * reach and is_resolved(basis):
-        return _bracketed(modes, orders, float(mesh[max(low - 1, 0)]), float(mesh[high]))
-    return _Bracket(basis, mesh, low, high, nearest)
+            low, predicted = middle, middle + nearest.distance / _fall(nearest, rows[:, middle : middle + 2])
+        halved = not halved or 2 * (high - low) <= width
+    if _much_shorter(float(mesh[high]), basis):
+        return _bracketed(modes, orders, float(mesh[max(low - 1, 0)]), float(mesh[high]), float(predicted * mesh[1]))
+    return _Bracket(basis, mesh, low, high, nearest_until(low, GAP)[0])
 
 
-def _within(last: int, used: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Points `used` for another duration as a start for the one that ends at index `last`: stretched, and coarse."""
+def _much_shorter(duration: float, basis: Basis) -> bool:
+    """Whether a basis on an interval of about this `duration` [s] would be better, and is worth it."""
+    return duration < MUCH_SHORTER * basis.duration and is_resolved(basis)
+
+
+def _fall(nearest: Projection, rows: NDArray[np.float64]) -> float:
+    """By how much the distance falls from one mesh point to the next: what moving the last impulse there takes off."""
+    here, there = nearest.multipliers @ rows
+    return max(float(nearest.amplitudes[-1] * (here - there)), np.finfo(float).tiny)
+
+
+def _stretched(used: NDArray[np.intp], last: int) -> NDArray[np.intp]:
+    """Indices of the impulses of another duration, stretched to end at index `last`, and their neighbours."""
     stretched = np.rint(used * (last / max(int(used[-1]), 1))).astype(np.intp)
-    return np.union1d(stretched, np.append(np.arange(0, last + 1, COARSE), last))
+    return np.clip(np.concatenate([stretched - 1, stretched, stretched + 1]), 0, last)
 
 
 def _starts(bracket: _Bracket) -> Iterator[tuple[Basis, Projection, float, float]]:
@@ -226,8 +268,8 @@ def _unresolved(modes: Modes, orders: tuple[int, ...]) -> Shortest:
     parts = [shortest_positive(*half) for half in halves(modes, orders)]
     both = reduce(Shaper.convolve, [Shaper.normalised(part.times, part.amplitudes) for part in parts])
     lower = max(float(part.times[-1]) * (1.0 - part.gap) for part in parts)
-    fewer = thinned(modes, orders, lower)
-    if fewer[0] != modes or fewer[1] != orders:
+    fewer = thinned(modes, orders, lower) if len(modes) <= FEW else (modes, orders)
+    if fewer != (modes, orders):
         bound = shortest_positive(*fewer)
         lower = max(lower, float(bound.times[-1]) * (1.0 - bound.gap))
     return Shortest(both.times, both.amplitudes, None, max(0.0, 1.0 - lower / both.duration))

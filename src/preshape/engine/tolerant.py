@@ -12,12 +12,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from preshape.band import Band
 from preshape.engine.basis import Basis
 from preshape.engine.certify import exclusion_of
 from preshape.engine.constraints import VibrationAtMost, ZeroVibration
-from preshape.engine.edges import Contact, Edge, edges_of, largest_vibration
+from preshape.engine.edges import Contact, Edge, edges_of, largest_vibration, vibration_peaks
 from preshape.engine.polynomial import Polynomial
 from preshape.engine.shortest import Shortest
 from preshape.engine.tolerant_newton import TolerantPoint, polish_tolerant
@@ -44,7 +45,20 @@ NO_WAVE, NO_IMPULSE = 1e-5, 1e-4
 NEGATIVE = -1e-12
 """An amplitude below this does not belong to a positive shaper."""
 
+SMALLEST = 1e-9
+"""A multiplier below this does not belong to a contact (of all together the squares sum to 1)."""
+
+SAME_RATE = 1e-9
+"""Rates that agree to this fraction are the same corner of a band."""
+
 MAXIMUM_PIVOTS = 6
+
+SMALL = 1e-7
+"""What interior-point methods leave where there is no impulse [-]."""
+
+LONGER = 1e-5
+"""First relative step of the duration: up, for the little by which a shaper without these impulses exceeds the
+tolerance, and down, for the little that is missing to a proof that a duration is too short."""
 
 
 def shortest_tolerant(asks: Sequence[VibrationAtMost], zeros: Sequence[ZeroVibration] = ()) -> Shortest:
@@ -70,7 +84,7 @@ def shortest_tolerant(asks: Sequence[VibrationAtMost], zeros: Sequence[ZeroVibra
         tried: list[int] = []
         for width in SAME_IMPULSE:
             start = _start(below, width)
-            if start.leads.size in tried:
+            if start.leads.size in (1, *tried):
                 continue
             tried.append(start.leads.size)
             exact = _confirmed(below.basis, start, edges, below.duration)
@@ -82,40 +96,57 @@ def shortest_tolerant(asks: Sequence[VibrationAtMost], zeros: Sequence[ZeroVibra
 
 def _start(trial: Trial, width: float) -> TolerantPoint:
     """Impulses and contacts of a trial: neighbours on the mesh, and on an edge, are one between them."""
-    step = float(trial.leads[1])
+    step = trial.step
     a = trial.solution.amplitudes
     support = np.flatnonzero(a > NO_IMPULSE * a.max())
     group = np.concatenate([[0], np.cumsum(np.diff(trial.leads[support]) > width * step)])
     amplitudes = np.bincount(group, a[support])
     leads = np.bincount(group, a[support] * trial.leads[support]) / amplitudes
     leads[0] = 0.0
-    waves = trial.solution.waves
-    edges: list[Edge] = []
-    places: list[float] = []
-    sums: list[complex] = []
-    for edge in dict.fromkeys(edge for edge, _ in trial.points):
-        own = sorted((w, waves[i]) for i, (e, w) in enumerate(trial.points) if e == edge)
-        mine = [(w, wave) for w, wave in own if abs(wave) > NO_WAVE * np.abs(waves).max()]
-        spacing = 1.01 * max(np.diff([w for w, _ in own]), default=1.0)
-        for w, wave in mine:
-            if edges and edges[-1] == edge and w - places[-1] <= spacing and 0.0 < places[-1] and w < 1.0:
-                total = sums[-1] + wave
-                places[-1] = (abs(sums[-1]) * places[-1] + abs(wave) * w) / (abs(sums[-1]) + abs(wave))
-                sums[-1] = total
-            else:
-                edges.append(edge)
-                places.append(w)
-                sums.append(complex(wave))
+    edges, places, waves = _contacts(trial)
     multipliers = trial.solution.multipliers
-    scale = math.sqrt(sum(abs(wave) ** 2 for wave in sums) + float(multipliers @ multipliers))
+    scale = math.sqrt(float(np.sum(np.abs(waves) ** 2)) + float(multipliers @ multipliers))
     return TolerantPoint(
         leads=leads,
         amplitudes=amplitudes / amplitudes.sum(),
         multipliers=multipliers / scale,
-        waves=np.asarray(np.array(sums) / scale, dtype=complex),
-        edges=tuple(edges),
-        places=np.array(places, dtype=float),
+        sizes=np.abs(waves) / scale,
+        phases=np.angle(waves),
+        edges=edges,
+        places=places,
     )
+
+
+def _contacts(trial: Trial) -> tuple[tuple[Edge, ...], NDArray[np.float64], NDArray[np.complex128]]:
+    """Edges, places and multipliers of the contacts of a trial; a corner, where edges meet, is one."""
+    waves = trial.solution.waves
+    found: list[tuple[Edge, float, complex]] = []
+    for edge in dict.fromkeys(edge for edge, _ in trial.points):
+        own = sorted((w, waves[i]) for i, (e, w) in enumerate(trial.points) if e == edge)
+        spacing = 1.01 * max(np.diff([w for w, _ in own]), default=1.0)
+        for w, wave in [(w, wave) for w, wave in own if abs(wave) > NO_WAVE * np.abs(waves).max()]:
+            if found and found[-1][0] == edge and w - found[-1][1] <= spacing and 0.0 < found[-1][1] and w < 1.0:
+                _, place, total = found.pop()
+                place = (abs(total) * place + abs(wave) * w) / (abs(total) + abs(wave))
+                found.append((edge, place, total + wave))
+            else:
+                found.append((edge, w, complex(wave)))
+    contacts: list[Contact] = []
+    sums: list[complex] = []
+    for edge, place, total in found:
+        contact = Contact(edge, place, edge.tolerance)
+        same = [i for i, other in enumerate(contacts) if _coincide(contact, other)]
+        if same:
+            sums[same[0]] += total
+        else:
+            contacts.append(contact)
+            sums.append(total)
+    return tuple(one.edge for one in contacts), np.array([one.w for one in contacts]), np.array(sums, dtype=complex)
+
+
+def _coincide(one: Contact, other: Contact) -> bool:
+    """Whether both are the same corner of a band."""
+    return abs(one.rate - other.rate) < SAME_RATE * abs(one.rate) and one.edge.tolerance == other.edge.tolerance
 
 
 def _confirmed(
@@ -133,6 +164,9 @@ def _confirmed(
             if keep.sum() < 2 or not keep[0]:
                 return None
             now = replace(now, leads=now.leads[keep], amplitudes=now.amplitudes[keep], error=np.inf)
+            continue
+        if (now.sizes < SMALLEST).any():
+            now = _contacts_kept(now, now.sizes >= SMALLEST)
             continue
         if now.error > CONVERGED:
             return None
@@ -158,15 +192,31 @@ def _confirmed(
 
 
 def _with_contact(now: TolerantPoint, peak: Contact) -> TolerantPoint:
-    """The same with one contact more, of a small multiplier in the direction of the vibration there."""
+    """The same with a contact at a peak: one from the end beside it, or one more.
+
+    Where V falls from the peak to the end of the edge, with no other maximum between, a contact at that end was taken
+    for this peak. (A corner of a band is the end of two edges.)
+    """
+    maxima = [other.w for other in vibration_peaks([peak.edge], now.leads, now.amplitudes)]
+    ends = [end for end, nearest in ((0.0, maxima[0]), (1.0, maxima[-1])) if nearest == peak.w and end not in maxima]
+    rates = np.array([complex(peak.edge.rate(np.array(end))) for end in ends])
+    moved = (np.abs(now.rates[:, None] - rates[None, :]) < SAME_RATE * np.abs(now.rates)[:, None]).any(axis=1)
     total = complex(np.exp(-peak.rate * now.leads) @ now.amplitudes)
-    wave = 1e-3 * float(np.abs(now.waves).max()) * total / abs(total)
+    kept = _contacts_kept(now, ~moved)
     return replace(
-        now,
-        waves=np.append(now.waves, wave),
-        edges=(*now.edges, peak.edge),
-        places=np.append(now.places, peak.w),
-        error=np.inf,
+        kept,
+        sizes=np.append(kept.sizes, now.sizes[moved].sum()),
+        phases=np.append(kept.phases, np.angle(total)),
+        edges=(*kept.edges, peak.edge),
+        places=np.append(kept.places, peak.w),
+    )
+
+
+def _contacts_kept(now: TolerantPoint, keep: NDArray[np.bool_]) -> TolerantPoint:
+    """The same with only some of the contacts."""
+    edges = tuple(edge for edge, kept in zip(now.edges, keep, strict=True) if kept)
+    return replace(
+        now, sizes=now.sizes[keep], phases=now.phases[keep], edges=edges, places=now.places[keep], error=np.inf
     )
 
 
@@ -200,26 +250,28 @@ def _certificate(basis: Basis | None, point: TolerantPoint, bands: Sequence[Band
 
 def _feasible(asked: Asked, below: Trial, above: Trial) -> Shortest:
     """What is left when Newton does not confirm: a shaper that keeps to the tolerance, and how short one might be."""
-    duration = above.duration
+    duration, longer = above.duration, LONGER
     while True:
-        trial = trial_at(asked, duration, above.active)
-        amplitudes = np.where(trial.solution.amplitudes > NEGATIVE, np.maximum(trial.solution.amplitudes, 0.0), 0.0)
-        amplitudes = np.where(amplitudes > 1e-9, amplitudes, 0.0)
+        trial = trial_at(asked, duration, above.active, above.support)
+        amplitudes = np.where(trial.solution.amplitudes > SMALL, trial.solution.amplitudes, 0.0)
+        amplitudes[0] = max(amplitudes[0], SMALL)  # V is measured at the last impulse, also where it is one to wait for
         amplitudes /= amplitudes.sum()
         if largest_vibration(asked.edges, trial.leads, amplitudes).excess <= MEETS:
             break
-        duration *= 1.002
+        duration, longer = duration * (1.0 + longer), 2.0 * longer
     used = np.flatnonzero(amplitudes)
     leads = trial.leads[used] - trial.leads[used[0]]
     times = leads[-1] - leads[::-1]
-    return Shortest(times, amplitudes[used][::-1], None, 1.0 - _too_short(below) / float(times[-1]))
+    return Shortest(times, amplitudes[used][::-1], None, 1.0 - _too_short(asked, below) / float(times[-1]))
 
 
-def _too_short(below: Trial) -> float:
-    """The trial's duration when its multipliers prove it too short on the continuum, else nothing."""
-    waves = below.solution.waves
-    rates = np.array([complex(edge.rate(np.array(w))) for edge, w in below.points])
-    offset = float(np.array([edge.tolerance for edge, _ in below.points]) @ np.abs(waves))
-    polynomial = Polynomial(below.basis, below.solution.multipliers, rates, waves, offset)
-    _, values, _ = polynomial.minima(below.duration, 1e-9)
-    return below.duration if values.min() > 0.0 else 0.0
+def _too_short(asked: Asked, below: Trial) -> float:
+    """A duration near the trial's that is proved too short: its polynomial is above zero on the continuum [s]."""
+    shorter = LONGER
+    while shorter < 0.5:
+        _, values, _ = below.polynomial.minima(below.duration, 1e-9)
+        if values.min() > 0.0:
+            return below.duration
+        below = trial_at(asked, below.duration * (1.0 - shorter), below.active, below.support)
+        shorter *= 2.0
+    return 0.0

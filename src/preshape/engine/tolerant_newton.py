@@ -1,17 +1,18 @@
 """Newton's method on the optimality system when vibration is tolerated in bands.
 
-Unknown are the amplitudes a_i, the leads u_2..u_N (u_1 = 0), the multipliers c of zero vibration and lambda_k (complex)
-of the contacts s_k where vibration reaches its tolerance v_k, and the places w_k of those contacts that lie inside an
-edge:
-  sum a_i g(u_i) = 0, sum a_i = 1;  F(s_k) = sum a_i exp(-s_k u_i) = v_k lambda_k / |lambda_k|;
-  Re(conj(lambda_k) dF/dw_k) = 0 inside an edge;
-  p(u_i) = 0 for all i (one is redundant), p'(u_i) = 0 for the interior ones;  |c|^2 + sum |lambda_k|^2 = 1
-with p(u) = c.g(u) + sum Re(conj(lambda_k) exp(-s_k u)) - sum v_k |lambda_k|. The system is square.
+Unknown are the amplitudes a_i, the leads u_2..u_N (u_1 = 0), the multipliers c of zero vibration, size l_k and
+direction e_k = exp(i phi_k) of the multiplier of each contact s_k where vibration reaches its tolerance v_k, and the
+places w_k of those contacts that lie inside an edge:
+  sum a_i g(u_i) = 0, sum a_i = 1;  F(s_k) = sum a_i exp(-s_k u_i) = v_k e_k;
+  Re(conj(e_k) dF/dw_k) = 0 inside an edge;
+  p(u_i) = 0 for all i (one is redundant), p'(u_i) = 0 for the interior ones;  |c|^2 + sum l_k^2 = 1
+with p(u) = c.g(u) + sum l_k (Re(conj(e_k) exp(-s_k u)) - v_k). The system is square, and smooth where an l_k passes
+through zero: of a contact that does not belong it comes out negative, like the amplitude of such an impulse.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from preshape.engine.edges import AT_END, Edge
 
 __all__ = ["TolerantPoint", "polish_tolerant"]
 
-MAXIMUM_STEPS = 30
+MAXIMUM_STEPS = 60
 
 LARGEST_MOVE = 0.4
 """No impulse moves by more than this fraction of the smallest gap in one step, no contact leaves its edge."""
@@ -42,8 +43,8 @@ class TolerantPoint:
         [s] and [-].
     multipliers : ndarray, shape (row,)
         c [-].
-    waves : ndarray of complex, shape (contact,)
-        lambda_k [-].
+    sizes, phases : ndarray, shape (contact,)
+        l_k [-] and phi_k [rad] of the multipliers lambda_k = l_k exp(i phi_k).
     edges : tuple of Edge
         The edge of each contact.
     places : ndarray, shape (contact,)
@@ -55,10 +56,16 @@ class TolerantPoint:
     leads: NDArray[np.float64]
     amplitudes: NDArray[np.float64]
     multipliers: NDArray[np.float64]
-    waves: NDArray[np.complex128]
+    sizes: NDArray[np.float64]
+    phases: NDArray[np.float64]
     edges: tuple[Edge, ...]
     places: NDArray[np.float64]
     error: float = np.inf
+
+    @property
+    def waves(self) -> NDArray[np.complex128]:
+        """lambda_k [-]."""
+        return np.asarray(self.sizes * np.exp(1j * self.phases), dtype=complex)
 
     @property
     def rates(self) -> NDArray[np.complex128]:
@@ -74,8 +81,8 @@ class TolerantPoint:
 
     @property
     def offset(self) -> float:
-        """sum v_k |lambda_k| [-]."""
-        return float(self.tolerances @ np.abs(self.waves))
+        """sum v_k l_k [-]."""
+        return float(self.tolerances @ self.sizes)
 
 
 def polish_tolerant(basis: Basis | None, start: TolerantPoint, scale: float) -> TolerantPoint:
@@ -86,7 +93,7 @@ def polish_tolerant(basis: Basis | None, start: TolerantPoint, scale: float) -> 
         error = float(np.abs(equations).max())
         if not np.isfinite(error):
             break
-        now = TolerantPoint(now.leads, now.amplitudes, now.multipliers, now.waves, now.edges, now.places, error)
+        now = replace(now, error=error)
         if error < best.error:
             best = now
         step = np.asarray(-np.linalg.lstsq(jacobian, equations, rcond=RANK_TOLERANCE)[0], dtype=float)
@@ -103,8 +110,8 @@ def _moved(
     now: TolerantPoint, step: NDArray[np.float64], inner: NDArray[np.intp], scale: float
 ) -> tuple[TolerantPoint, float] | None:
     """The point after a step, shortened so that impulses keep their order and contacts their edges."""
-    n, m, k = now.leads.size, now.multipliers.size, now.waves.size
-    da, du, dc, dl, dw = np.split(step, np.cumsum([n, n - 1, m, 2 * k]))
+    n, m, k = now.leads.size, now.multipliers.size, now.sizes.size
+    da, du, dc, dl, dphi, dw = np.split(step, np.cumsum([n, n - 1, m, k, k]))
     du = du * scale
     shorten = 1.0
     gap = float(np.diff(now.leads).min())
@@ -121,9 +128,14 @@ def _moved(
     places[inner] += shorten * dw
     leads = now.leads.copy()
     leads[1:] += shorten * du
-    waves = now.waves + shorten * (dl[:k] + 1j * dl[k:])
     after = TolerantPoint(
-        leads, now.amplitudes + shorten * da, now.multipliers + shorten * dc, waves, now.edges, places
+        leads,
+        now.amplitudes + shorten * da,
+        now.multipliers + shorten * dc,
+        now.sizes + shorten * dl,
+        now.phases + shorten * dphi,
+        now.edges,
+        places,
     )
     size = max(float(np.abs(du).max()) / scale, float(np.abs(da).max()), float(np.abs(dw).max(initial=0.0)))
     return after, size
@@ -132,9 +144,9 @@ def _moved(
 def _system(
     basis: Basis | None, now: TolerantPoint, scale: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.intp]]:
-    """Equations, their derivatives by (a, u_2.., c, Re lambda, Im lambda, w of inner contacts), and those contacts."""
-    u, a, c, waves, v = now.leads, now.amplitudes, now.multipliers, now.waves, now.tolerances
-    n, m, k = u.size, c.size, waves.size
+    """Equations, their derivatives by (a, u_2.., c, l, phi, w of inner contacts), and those contacts."""
+    u, a, c, sizes, v = now.leads, now.amplitudes, now.multipliers, now.sizes, now.tolerances
+    n, m, k = u.size, c.size, sizes.size
     inner = np.flatnonzero((now.places > AT_END) & (now.places < 1.0 - AT_END))
     s = now.rates
     s1, s2 = (
@@ -142,57 +154,50 @@ def _system(
         for d in (1, 2)
     )
     e = np.exp(np.multiply.outer(-s, u))
-    length, unit = np.abs(waves), waves / np.abs(waves)
+    turn = np.exp(-1j * now.phases)
     g, g1, g2 = (np.zeros((0, n)),) * 3
     if basis is not None:
         raw = basis.raw(u)
         g, g1, g2 = basis.values(raw), basis.slopes(raw, 1) * scale, basis.slopes(raw, 2) * scale**2
-    conj = waves.conj()
-    p = c @ g + np.real(conj @ e) - v @ length
-    p1 = c @ g1 - np.real((conj * s) @ e) * scale
-    p2 = c @ g2 + np.real((conj * s**2) @ e) * scale**2
+    # what a contact of size one adds to p, p' and p''
+    wave, wave1, wave2 = (((-s * scale) ** d * turn)[:, None] * e for d in range(3))
+    p = c @ g + sizes @ (wave.real - v[:, None])
+    p1 = c @ g1 + sizes @ wave1.real
+    p2 = c @ g2 + sizes @ wave2.real
     total, by_rate, by_rate_twice = e @ a, -(e @ (a * u)), e @ (a * u**2)
-    excess = total - v * unit
-    along = np.real(conj * s1 * by_rate)[inner]
+    excess = total - v * turn.conj()
+    along = (turn * s1 * by_rate)[inner]
     equations = np.concatenate(
-        [g @ a, [a.sum() - 1.0], p[:-1], p1[1:-1], excess.real, excess.imag, along, [c @ c + length @ length - 1.0]]
+        [g @ a, [a.sum() - 1.0], p[:-1], p1[1:-1], excess.real, excess.imag, along.real, [c @ c + sizes @ sizes - 1.0]]
     )
 
     rows = np.cumsum([m, 1, n - 1, n - 2, k, k, inner.size])
     columns = np.cumsum([n, n - 1, m, k, k])
     jacobian = np.zeros((equations.size, columns[-1] + inner.size))
     amp, lead, mult = slice(0, n), slice(n, columns[1]), slice(columns[1], columns[2])
-    real, imag, place = slice(columns[2], columns[3]), slice(columns[3], columns[4]), slice(columns[4], None)
+    size, phase, place = slice(columns[2], columns[3]), slice(columns[3], columns[4]), slice(columns[4], None)
     jacobian[:m, amp], jacobian[:m, lead] = g, (g1 * a)[:, 1:]
     jacobian[m, amp] = 1.0
-    touch = slice(rows[1], rows[2])
+    touch, flat, still = slice(rows[1], rows[2]), slice(rows[2], rows[3]), slice(rows[5], rows[6])
+    moving, bending = (turn * s1)[:, None] * (-u) * e, (turn * s1)[:, None] * (s[:, None] * u - 1.0) * e * scale
     jacobian[touch, lead] = np.diag(p1)[:-1, 1:]
     jacobian[touch, mult] = g.T[:-1]
-    jacobian[touch, real] = (e.real - (v * unit.real)[:, None]).T[:-1]
-    jacobian[touch, imag] = (e.imag - (v * unit.imag)[:, None]).T[:-1]
-    moving = np.real((conj * s1)[:, None] * (-u) * e)
-    jacobian[touch, place] = moving[inner].T[:-1]
-    flat = slice(rows[2], rows[3])
+    jacobian[touch, size] = (wave.real - v[:, None]).T[:-1]
+    jacobian[touch, phase] = (sizes[:, None] * wave.imag).T[:-1]
+    jacobian[touch, place] = (sizes[:, None] * moving.real)[inner].T[:-1]
     jacobian[flat, lead] = np.diag(p2)[1:-1, 1:]
     jacobian[flat, mult] = g1.T[1:-1]
-    slope = -s[:, None] * e * scale
-    jacobian[flat, real], jacobian[flat, imag] = slope.real.T[1:-1], slope.imag.T[1:-1]
-    bending = np.real((conj * s1)[:, None] * (s[:, None] * u - 1.0) * e) * scale
-    jacobian[flat, place] = bending[inner].T[1:-1]
+    jacobian[flat, size] = wave1.real.T[1:-1]
+    jacobian[flat, phase] = (sizes[:, None] * wave1.imag).T[1:-1]
+    jacobian[flat, place] = (sizes[:, None] * bending.real)[inner].T[1:-1]
     by_lead = -s[:, None] * a * e * scale
     for part, rows_of in ((np.real, slice(rows[3], rows[4])), (np.imag, slice(rows[4], rows[5]))):
         jacobian[rows_of, amp], jacobian[rows_of, lead] = part(e), part(by_lead)[:, 1:]
+        jacobian[rows_of, phase] = -np.diag(part(1j * v * turn.conj()))
         jacobian[rows_of, place] = np.diag(part(s1 * by_rate))[:, inner]
-    turn = v / length
-    jacobian[rows[3] : rows[4], real] = -np.diag(turn * (1.0 - unit.real**2))
-    jacobian[rows[3] : rows[4], imag] = np.diag(turn * unit.real * unit.imag)
-    jacobian[rows[4] : rows[5], real] = np.diag(turn * unit.real * unit.imag)
-    jacobian[rows[4] : rows[5], imag] = -np.diag(turn * (1.0 - unit.imag**2))
-    still = slice(rows[5], rows[6])
-    jacobian[still, amp] = moving[inner]
-    jacobian[still, lead] = (np.real((conj * s1)[:, None] * a * (s[:, None] * u - 1.0) * e) * scale)[inner, 1:]
-    jacobian[still, real] = np.diag(np.real(s1 * by_rate))[inner]
-    jacobian[still, imag] = np.diag(np.imag(s1 * by_rate))[inner]
-    jacobian[still, place] = np.diag(np.real(conj * (s2 * by_rate + s1**2 * by_rate_twice)))[np.ix_(inner, inner)]
-    jacobian[-1, mult], jacobian[-1, real], jacobian[-1, imag] = 2.0 * c, 2.0 * waves.real, 2.0 * waves.imag
+    jacobian[still, amp] = moving.real[inner]
+    jacobian[still, lead] = (a * bending.real)[inner, 1:]
+    jacobian[still, phase] = np.diag((turn * s1 * by_rate).imag)[inner]
+    jacobian[still, place] = np.diag((turn * (s2 * by_rate + s1**2 * by_rate_twice)).real)[np.ix_(inner, inner)]
+    jacobian[-1, mult], jacobian[-1, size] = 2.0 * c, 2.0 * sizes
     return equations, jacobian, inner

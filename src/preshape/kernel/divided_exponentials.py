@@ -122,9 +122,9 @@ class DividedExponentials:
 
 
 def _middle(group: Sequence[complex]) -> complex:
+    if len(set(group)) == 1:
+        return complex(group[0])
     parts = np.asarray(group)
-    if (parts == parts[0]).all():
-        return complex(parts[0])
     return complex(parts.real.min() + parts.real.max(), parts.imag.min() + parts.imag.max()) / 2.0
 
 

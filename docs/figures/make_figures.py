@@ -1,0 +1,161 @@
+"""The figures of the theory page, into docs/images; run by `make figures`."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from preshape import Modes, design
+from preshape.engine.basis import Basis
+from preshape.engine.polynomial import Polynomial
+from preshape.engine.projection import project
+from preshape.files import write_atomically
+from preshape.report.figures import ACCENT, INK, MUTED, SECOND, as_svg, new_figure, tidy
+from preshape.vibration import residual_vibration, tolerated_bands
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+HERE = Path(__file__).resolve().parent
+IMAGES = HERE.parent / "images"
+
+SHUTTLE_ARM = [(0.20, 0.0), (0.26, 0.0), (0.45, 0.0), (0.59, 0.0)]
+
+
+def certificate() -> Figure:
+    """Left: the dual polynomial of the shortest shaper over its impulses; right: an interval 5 % shorter."""
+    shaper = design.direct(SHUTTLE_ARM)
+    proof = shaper.design.certificate
+    assert proof is not None
+    end, short = shaper.duration, 0.95 * shaper.duration
+    basis = Basis(Modes(SHUTTLE_ARM), (1, 1, 1, 1), short)
+    apart = project(basis, np.linspace(0.0, short, 400), short)
+    assert apart.infeasible
+    figure = new_figure(10.0, 5.0)
+    axes = figure.subplots(2, 2, sharex="col", height_ratios=[2.0, 1.0])
+    t = np.linspace(0.0, end, 2001)
+    p = proof.polynomial(t)
+    axes[0, 0].plot(t, p / p.max(), color=ACCENT, linewidth=1.8)
+    axes[0, 0].plot(shaper.times, np.zeros(len(shaper)), "o", color=INK, markersize=5, clip_on=False, zorder=3)
+    tidy(axes[0, 0], "", "polynomial p, over its largest [-]", f"T* = {end:.3f} s: p touches zero at nine times")
+    axes[1, 0].vlines(shaper.times, 0.0, shaper.amplitudes, color=ACCENT, linewidth=2.0)
+    axes[1, 0].plot(shaper.times, shaper.amplitudes, "o", color=INK, markersize=5)
+    tidy(axes[1, 0], "time [s]", "amplitude [-]", "... and there are the nine impulses")
+    for axis in axes[:, 0]:
+        axis.axvline(end, color=MUTED, linewidth=1.0, linestyle="--")
+    axes[1, 0].set_ylim(0.0, 1.25 * shaper.amplitudes.max())
+    t = np.linspace(0.0, short, 2001)
+    p = Polynomial(basis, apart.multipliers)(short - t)
+    axes[0, 1].plot(t, p / p.max(), color=SECOND, linewidth=1.8)
+    axes[0, 1].axhline(p.min() / p.max(), color=INK, linewidth=1.0, linestyle=":")
+    axes[0, 1].text(0.5 * short, p.min() / p.max() - 0.02, "never below this line", ha="center", va="top", fontsize=9)
+    axes[0, 1].axhline(0.0, color=MUTED, linewidth=1.0)
+    tidy(axes[0, 1], "", "", f"{short:.3f} s, 5 % shorter: a p above zero everywhere")
+    axes[1, 1].text(
+        0.5,
+        0.5,
+        "positive impulses would give  $\\sum a_i\\,p(t_i) > 0$,\nbut zero vibration means  $\\sum a_i\\,p(t_i) = 0$:\n"
+        "there is no shaper",
+        transform=axes[1, 1].transAxes,
+        ha="center",
+        va="center",
+        fontsize=10.5,
+        color=INK,
+    )
+    axes[1, 1].set_axis_off()
+    axes[0, 1].tick_params(labelbottom=True)
+    axes[0, 1].set_xlabel("time [s]", fontsize=9.5, color=INK)
+    for axis in axes[0]:
+        axis.set_ylim(-0.06, 1.05)
+    return figure
+
+
+def growth() -> Figure:
+    """Time over the number of modes, as benchmarks/many_modes.py measured it."""
+    found = json.loads((HERE / "growth.json").read_text())
+    figure = new_figure(7.0, 4.2)
+    axes = figure.subplots()
+    styles = {"evenly spaced": (ACCENT, "o", "-"), "log-spaced": (INK, "s", "--"), "random": (SECOND, "^", "-.")}
+    for kind, rows in found.items():
+        colour, mark, line = styles[kind]
+        proved = [row for row in rows if row["status"] == "optimal"]
+        others = [row for row in rows if row["status"] != "optimal"]
+        axes.plot(
+            [row["modes"] for row in proved],
+            [row["seconds"] for row in proved],
+            color=colour,
+            marker=mark,
+            linestyle=line,
+            label=f"{kind}, 1 to 20 Hz",
+        )
+        axes.plot(
+            [row["modes"] for row in others],
+            [row["seconds"] for row in others],
+            color=colour,
+            marker=mark,
+            linestyle="none",
+            fillstyle="none",
+            markersize=8,
+            label=f"{kind}: feasible, with a gap" if others else None,
+        )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xticks([1, 2, 4, 10, 20, 40], labels=["1", "2", "4", "10", "20", "40"])
+    axes.set_xticks([], minor=True)
+    tidy(axes, "modes (order 1, damping 0.01)", "time [s]", "Design and proof, cold")
+    axes.legend(fontsize=9, frameon=False)
+    return figure
+
+
+def insensitivity() -> Figure:
+    """V over frequency for two bands; duration over the width of one band, with the EI family."""
+    shaper = design.specified_insensitivity([(0.9, 1.1), (2.7, 3.3)], 0.05)
+    proof = shaper.design.certificate
+    assert proof is not None
+    figure = new_figure(10.0, 3.8)
+    left, right = figure.subplots(1, 2)
+    f = np.linspace(0.0, 4.0, 2001)
+    left.plot(f, 100.0 * residual_vibration(shaper, f), color=ACCENT, linewidth=1.8)
+    left.axhline(5.0, color=INK, linewidth=1.0, linestyle=":")
+    for low, high in ((0.9, 1.1), (2.7, 3.3)):
+        left.axvspan(low, high, color="#e8e8e8", zorder=0)
+    left.plot([p.frequency for p in proof.points], [5.0] * len(proof.points), "o", color=INK, markersize=5)
+    left.set_ylim(0.0, 30.0)
+    left.text(0.03, 5.6, "5 %", fontsize=9, color=INK)
+    tidy(
+        left, "natural frequency [Hz]", "residual vibration [%]", f"Two bands, {shaper.duration:.4f} s, proved shortest"
+    )
+    widths = np.concatenate([np.linspace(0.07, 0.4, 12), np.linspace(0.42, 1.13, 24)])
+    durations = [design.specified_insensitivity((1.0 - w / 2.0, 1.0 + w / 2.0), 0.05).duration for w in widths]
+    right.plot(widths, durations, color=ACCENT, linewidth=1.8, label="shortest, proved")
+    for humps, name in ((1, "EI"), (2, "two-hump EI"), (3, "three-hump EI")):
+        ei = design.k_hump_ei((1.0, 0.0), humps, 0.05)
+        low, high = next(band for band in tolerated_bands(ei, 0.05, 0.0, 0.0, 2.0) if band[0] <= 1.0 <= band[1])
+        # the closed form is tuned to its mode, the band to its middle: durations in periods of the middle
+        middle = 0.5 * (low + high)
+        width, duration = (high - low) / middle, ei.duration * middle
+        right.plot([width], [duration], "o", color=SECOND, markersize=7)
+        right.annotate(name, (width, duration), (width - 0.02, duration + 0.1), fontsize=9, color=INK, ha="right")
+    right.plot([], [], "o", color=SECOND, label="closed forms")
+    right.legend(fontsize=9, frameon=False, loc="lower right")
+    tidy(right, "width of the band over its middle [-]", "duration [periods]", "One undamped band at 5 %")
+    right.set_ylim(0.0, 1.1 * math.ceil(max(durations)))
+    return figure
+
+
+FIGURES = {"certificate": certificate, "growth": growth, "insensitivity": insensitivity}
+
+
+def main() -> None:
+    """Draw all of them."""
+    IMAGES.mkdir(exist_ok=True)
+    for name, draw in FIGURES.items():
+        print(write_atomically(IMAGES / f"{name}.svg", as_svg(draw())))
+
+
+if __name__ == "__main__":
+    main()
