@@ -42,18 +42,18 @@ AS_HIGH = 1e-12
 
 @dataclass(frozen=True)
 class HighFrequencyGain:
-    """The largest gain |F| of a shaper over a range of frequencies.
+    """The largest gain abs(F) of a shaper over a range of frequencies.
 
     Parameters
     ----------
     value : float
-        The largest |F| found in the range [-]: 1 leaves what is there, 3 is three times the unshaped excitation.
+        The largest abs(F) found in the range [-]: 1 leaves what is there, 3 is three times the unshaped excitation.
     frequency : float
         Where it is [Hz].
     low, high : float
         The range that was searched [Hz].
     bound : float
-        sum |a_i| [-], which |F| exceeds at no frequency, in the range or above it. Impulse times without a common
+        sum abs(a_i) [-], which abs(F) exceeds at no frequency, in the range or above it. Impulse times without a common
         measure come as near to it as one likes, if one looks high enough.
     """
 
@@ -65,7 +65,7 @@ class HighFrequencyGain:
 
 
 def high_frequency_gain(shaper: Shaper, above: float, up_to: float | None = None) -> HighFrequencyGain:
-    """The largest gain |sum_i a_i exp(-2 pi i f t_i)| of a shaper over the frequencies above its modes.
+    """The largest gain abs(sum_i a_i exp(-2 pi i f t_i)) of a shaper over the frequencies above its modes.
 
     It is located on the continuum: sampled, and every sample that could belong to the largest peak refined by
     bisection of the slope.
