@@ -46,7 +46,7 @@ FEASIBLE = 1e-12
 IN_SPAN = 1e-10
 """Coefficients that miss the rows' span by no more than this fraction of the largest are in it."""
 
-DENSE = 1e-9
+DENSE = 3e-11
 """Rounding of the rows from which on their span is computed in thirty-two digits instead of sixteen."""
 
 
@@ -54,7 +54,7 @@ class Basis:
     """Rows g(u) in R^m, orthonormal over even leads in [0, duration], each of mean square one.
 
     m = 2 sum_j (q_j + 1) unless some are dependent to all digits. Modes far from each other are spanned by divided
-    exponentials; where these are dependent to more than seven digits (dense modes on a short interval), by series that
+    exponentials; where these are dependent to more than five digits (dense modes on a short interval), by series that
     were orthonormalised in thirty-two digits.
 
     Parameters

@@ -84,8 +84,8 @@ class Polynomial:
         rows = self._rows(samples)
         values, slopes, bends, thirds = (self._weights[n] @ rows for n in range(4))
         step = float(samples[1] - samples[0])
-        # an extremum hides between two samples only where the slope is nearly zero, and its own slope too; a function of
-        # one sign at both ends whose derivative changes its sign once comes nearer to zero only if it sets out that way
+        # an extremum hides between two samples only where the slope is nearly zero, and its own slope too; a function
+        # of one sign at both whose derivative changes its sign once comes nearer to zero only if it sets out that way
         bend, third = _larger(bends), _larger(thirds)
         near = _smaller(slopes) <= step * (bend + step * third)
         hidden = near & (_smaller(bends) <= 2.0 * step * third) & _dips(bends, thirds)
@@ -107,7 +107,7 @@ class Polynomial:
         slopes: NDArray[np.float64],
         near: NDArray[np.bool_],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
-        """Nodes in order with `more` among them, p'' and p' there, and whether the interval from each may hide a root."""
+        """Nodes in order with `more` among them, p'' and p' there, and whether roots may hide after each."""
         if more.size == 0:
             return nodes, bends, slopes, near
         rows, every = self._rows(more), np.concatenate([nodes, more])

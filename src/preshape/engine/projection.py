@@ -98,8 +98,10 @@ def nearest_on_mesh(
     there is none on the mesh: the same answer as :func:`nearest_on`, in a fraction of its time. The fraction
     `gap` of its bound may be missing. Also the indices of the impulses.
     """
-    chosen, before = np.unique(start), np.inf
+    among, before = np.zeros(mesh.size, dtype=bool), np.inf
+    among[start] = True
     for _ in range(MAXIMUM_EXCHANGES):
+        chosen = np.flatnonzero(among)
         nearest = nearest_on(basis, mesh[chosen], rows[:, chosen])
         if nearest.feasible:
             return nearest, np.searchsorted(mesh, nearest.leads)
@@ -112,10 +114,10 @@ def nearest_on_mesh(
         low = p < nearest.distance
         low[1:] &= p[1:] <= p[:-1]
         low[:-1] &= p[:-1] <= p[1:]
-        low[chosen] = False
-        if not low.any():
+        if not (low & ~among).any():
             return nearest, np.searchsorted(mesh, nearest.leads)
-        chosen = np.union1d(np.searchsorted(mesh, nearest.leads), np.flatnonzero(low))
+        among = low
+        among[np.searchsorted(mesh, nearest.leads)] = True
     nearest = nearest_on(basis, mesh, rows)
     return nearest, np.searchsorted(mesh, nearest.leads)
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from preshape.engine.basis import Basis, plain_rows
 from preshape.engine.certify import certified
 from preshape.engine.newton import Polished, settled
-from preshape.engine.projection import GAP, Projection, nearest_on, nearest_on_mesh, project
+from preshape.engine.projection import MESH_GAP, Projection, nearest_on, nearest_on_mesh, project
 from preshape.engine.repair import confirmed
 from preshape.engine.unresolved import convolved_positive, halves, is_resolved, thinned
 from preshape.mode import Modes
@@ -43,7 +43,7 @@ FEW = 12
 """Up to so many modes the bound from leaving out single constraints is worth its time."""
 
 DECIDED = 0.5
-"""The exchange may stop when p falls short of its bound by less than this fraction: the interval is proved too short."""
+"""An exchange may stop when p falls short of its bound by less than this fraction: the interval is too short."""
 
 DROWNED = 100.0
 """For dense modes a distance below this many zeros, one point below the mesh's shortest duration, is all rounding."""
@@ -172,7 +172,7 @@ def _bracketed(
         halved = not halved or 2 * (high - low) <= width
     if _much_shorter(float(mesh[high]), basis):
         return _bracketed(modes, orders, float(mesh[max(low - 1, 0)]), float(mesh[high]), float(predicted * mesh[1]))
-    return _Bracket(basis, mesh, low, high, nearest_until(low, GAP)[0])
+    return _Bracket(basis, mesh, low, high, nearest_until(low, MESH_GAP)[0])
 
 
 def _much_shorter(duration: float, basis: Basis) -> bool:
@@ -189,7 +189,8 @@ def _fall(nearest: Projection, rows: NDArray[np.float64]) -> float:
 def _stretched(used: NDArray[np.intp], last: int) -> NDArray[np.intp]:
     """Indices of the impulses of another duration, stretched to end at index `last`, and their neighbours."""
     stretched = np.rint(used * (last / max(int(used[-1]), 1))).astype(np.intp)
-    return np.clip(np.concatenate([stretched - 1, stretched, stretched + 1]), 0, last)
+    near: NDArray[np.intp] = np.concatenate([stretched - 1, stretched, stretched + 1])
+    return near[(near >= 0) & (near <= last)]
 
 
 def _starts(bracket: _Bracket) -> Iterator[tuple[Basis, Projection, float, float]]:
