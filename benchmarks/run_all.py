@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-HELPERS = {"run_all.py", "timing.py"}
+HELPERS = {"peers.py", "run_all.py", "timing.py"}
 
 
 def main() -> None:

@@ -1,12 +1,22 @@
-"""Best of several runs, and one row of output."""
+"""Best of several runs, one run, and one row of output; importing this leaves linear algebra one thread.
+
+The matrices here are small: with several threads OpenBLAS is slower, and its times depend on what else the machine does.
+It reads its setting when NumPy is first imported, so a script that was started without it is started again.
+"""
 
 from __future__ import annotations
 
+import os
+import sys
 import time
 from collections.abc import Callable
 from typing import TypeVar
 
 __all__ = ["best_of", "once", "row"]
+
+if os.environ.get("OPENBLAS_NUM_THREADS") != "1":
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"
+    os.execv(sys.executable, sys.orig_argv)
 
 T = TypeVar("T")
 

@@ -6,8 +6,8 @@ most v_k at each point s_k, satisfies  integral p dmu <= 0  for every ::
 
     p(u) = Re sum_n c_n phi_n(u) + Re sum_k conj(lambda_k) exp(-s_k u) - sum_k v_k |lambda_k|
 
-with phi_n spanning u^i exp(-s_j u), i <= q_j. If p >= 0 on [0, T], mu can live only where p = 0; if no positive weights on
-those points but T satisfy the constraints, then mu needs the point T itself, so T is shortest.
+with phi_n spanning u^i exp(-s_j u), i <= q_j. If p >= 0 on [0, T], mu can live only where p = 0; if no positive weights
+on those points but T satisfy the constraints, then mu needs the point T itself, so T is shortest.
 """
 
 from __future__ import annotations

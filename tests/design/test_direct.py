@@ -155,47 +155,36 @@ def test_two_modes_need_four_over_the_sum_of_the_frequencies(low: float, high: f
     assert shaper.duration == pytest.approx(4.0 / (low + high), rel=1e-9)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(
-    st.lists(st.tuples(st.floats(1.0, 8.0), st.floats(0.0, 0.2)), min_size=1, max_size=4),
+    st.lists(
+        st.tuples(st.floats(1.0, 8.0), st.floats(0.0, 0.2)), min_size=1, max_size=4, unique_by=lambda m: round(m[0], 6)
+    ),
     st.integers(0, 1),
 )
-def test_random_modes_are_always_met_and_never_longer_than_convolved(
+def test_random_modes_are_always_proved_and_never_longer_than_convolved(
     modes: list[tuple[float, float]], order: int
 ) -> None:
-    apart = sorted(frequency for frequency, _ in modes)
-    if any(b < 1.02 * a for a, b in zip(apart, apart[1:], strict=False)):
-        return
     shaper = design.direct(modes, order)
     assert (shaper.amplitudes > 0.0).all()
     assert shaper.design.residual is not None and shaper.design.residual < 1e-12
     assert shaper.duration <= design.zvdk(modes, order).duration * (1.0 + 1e-9)
-    if shaper.design.status == "optimal":
-        assert is_proved_shortest(shaper)
-    else:
-        assert shaper.design.certificate is None and 0.0 < shaper.design.settings["gap"] < 1.0
+    assert shaper.design.status == "optimal" and is_proved_shortest(shaper)
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])
-@pytest.mark.parametrize("ratio", [1.0002, 1.0005, 1.001, 1.002, 1.005, 1.01, 1.02, 1.05])
-def test_near_modes_are_never_promised_too_much(ratio: float, order: int) -> None:
+@pytest.mark.parametrize("ratio", [1.0 + 1e-6, 1.0002, 1.0005, 1.001, 1.005, 1.02, 1.05])
+def test_near_modes_are_told_apart(ratio: float, order: int) -> None:
     """Two undamped modes need (order + 1) 2 / (f1 + f2), as for one mode between them; searches find less when
-    rounding hides the constraints. Either that is proved, or a longer shaper is called feasible with an honest gap."""
-    needed = (order + 1) * 2.0 / (1.0 + ratio)
+    rounding hides the constraints."""
     shaper = design.direct([(1.0, 0.0), (ratio, 0.0)], order)
+    assert shaper.design.status == "optimal" and is_proved_shortest(shaper)
+    assert shaper.duration == pytest.approx((order + 1) * 2.0 / (1.0 + ratio), rel=1e-9)
     assert shaper.design.residual < 1e-12
-    if shaper.design.status == "optimal":
-        assert shaper.duration == pytest.approx(needed, rel=1e-6)
-    else:
-        assert shaper.design.status == "feasible" and shaper.design.certificate is None
-        assert (
-            needed * (1.0 - 1e-9) <= shaper.duration <= design.zvdk([(1.0, 0.0), (ratio, 0.0)], order).duration + 1e-9
-        )
-        assert shaper.duration * (1.0 - shaper.design.settings["gap"]) <= needed * (1.0 + 1e-9)
 
 
 def test_near_modes_with_many_derivatives_still_leave_nothing() -> None:
-    """The constraint rows have a condition of 1e8 here; the residual must not show it."""
+    """Scaled rows would have a condition of 1e8 here; the residual must not show it."""
     shaper = design.direct(TABLE[-1][1], order=2)
     assert shaper.design.status == "optimal"
     assert shaper.design.residual < 1e-12

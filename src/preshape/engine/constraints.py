@@ -33,6 +33,14 @@ __all__ = [
 ]
 
 
+LEAST_TOLERANCE = 1e-5
+"""The conic solver meets cones to 1e-9; below this tolerance that is not fine enough to find the shortest duration."""
+
+
+AT_ONCE = 1e-6
+"""A sample that is earlier than an impulse by less than this part of the sample time is at it."""
+
+
 @dataclass(frozen=True)
 class Rows:
     """What a constraint asks of amplitudes a at given leads: |cones a| <= radii, rows a <= limits, low <= a <= high.
@@ -91,7 +99,7 @@ class VibrationAtMost:
     band : Band
         Natural frequencies [Hz] and damping ratios [-].
     tolerance : float
-        V allowed [-].
+        V allowed [-], at least 0.00001.
     points : tuple of complex
         Rates s = z w + i w sqrt(1 - z^2) [1/s] at which it is asked; the exchange adds to them.
     """
@@ -101,7 +109,11 @@ class VibrationAtMost:
     points: tuple[complex, ...] = ()
 
     def __post_init__(self) -> None:
-        tolerance_of(self.tolerance)
+        if tolerance_of(self.tolerance) < LEAST_TOLERANCE:
+            raise InputError(
+                f"tolerance {self.tolerance:g} is below {LEAST_TOLERANCE:g}, too little for the conic solver: tolerate "
+                "more, or ask for no vibration at all (ZeroVibration, design.direct), which is met to the last digits."
+            )
 
     def rows(self, leads: NDArray[np.float64]) -> Rows:
         """One cone a point."""
@@ -157,7 +169,8 @@ class ResponseBetween:
         duration = float(leads.max())
         times = np.arange(0.0, duration + self.until + 0.5 * self.sample_time, self.sample_time)
         delay = times[:, None] - (duration - leads)[None, :]
-        shaped: NDArray[np.float64] = np.where(delay >= 0.0, self.response(np.maximum(delay, 0.0)), 0.0)
+        begun = delay >= -AT_ONCE * self.sample_time  # a sample at an impulse sees it, rounding or not
+        shaped: NDArray[np.float64] = np.where(begun, self.response(np.maximum(delay, 0.0)), 0.0)
         return _between(shaped, self.low, self.high)
 
 

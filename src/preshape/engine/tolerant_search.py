@@ -51,6 +51,9 @@ INACTIVE = 1e-6
 LARGEST = 150_000
 """Impulses times points of a programme; beyond it a single one takes seconds."""
 
+HOPELESS = 50_000
+"""The same for a shaper of one period of the lowest frequency, which is about the least that wide bands need."""
+
 WIDEST = 12.0
 """Ratio of frequencies that is still solved in seconds at 5 %; named in the advice only."""
 
@@ -139,13 +142,8 @@ def trial_at(
     if support is not None:
         leads, missed = np.union1d(mesh, support[support < duration]), FINE
     now = list(dict.fromkeys([*points, *sampled_points(asked.edges, duration)]))
-    if leads.size * len(now) > LARGEST:
-        raise InputError(
-            f"the bands from {asked.lowest:g} to {asked.fastest:g} Hz are too wide: a shaper of {duration:.3g} s, "
-            f"which is not enough for them yet, has {leads.size} possible impulses and {len(now)} points to check; "
-            f"narrow them to a ratio of {WIDEST:g} or so between the highest and the lowest frequency, or raise the "
-            "tolerance."
-        )
+    if support is None and leads.size * len(now) > LARGEST:
+        raise InputError(_too_wide(asked))
     basis: Basis | None = None
     for left in range(MAXIMUM_EXCHANGES - 1, -1, -1):
         now.sort(key=lambda point: asked.edges.index(point[0]))
@@ -242,8 +240,18 @@ def _narrowed(
     return below, above
 
 
+def _too_wide(asked: Asked) -> str:
+    return (
+        f"the bands from {asked.lowest:g} to {asked.fastest:g} Hz are too wide to be solved soon: narrow them to a "
+        f"ratio of {WIDEST:g} or so between the highest and the lowest frequency, or raise the tolerance."
+    )
+
+
 def _first_bracket(asked: Asked) -> tuple[Trial, Trial]:
     """One duration that is too short and one that is enough."""
+    period = 1.0 / asked.lowest
+    if MESH_PER_PERIOD * asked.fastest * period * len(sampled_points(asked.edges, period)) > HOPELESS:
+        raise InputError(_too_wide(asked))
     duration = _first_guess(asked)
     now, growth = trial_at(asked, duration), GROWTH
     below: Trial | None = now if now.excess > 0.0 else None
