@@ -14,8 +14,6 @@ from preshape import Modes, design
 
 __all__ = ["Sequential", "interior_point_bisection", "sequential", "shortest_by_slsqp", "zero_vibration"]
 
-Function = Callable[[NDArray[np.float64]], NDArray[np.float64]]
-
 MESH_PER_PERIOD = 16
 WIDTH = 1e-3
 """The bisection stops at this relative width: a finer one costs in proportion to its logarithm."""
@@ -70,7 +68,11 @@ class Sequential:
 
 
 def sequential(
-    count: int, scale: float, starts: int, constraints: list[dict[str, Any]], missed: Callable[[NDArray[np.float64]], float]
+    count: int,
+    scale: float,
+    starts: int,
+    constraints: list[dict[str, Any]],
+    missed: Callable[[NDArray[np.float64]], float],
 ) -> Sequential:
     """SLSQP from seeded random starts, amplitudes and leads of `count` impulses free: x = (a_1.., u_2.. / scale).
 
@@ -89,19 +91,22 @@ def sequential(
         {"type": "ineq", "fun": lambda x: order @ x, "jac": lambda x: order},
         *constraints,
     ]
+    settings: dict[str, Any] = {
+        "jac": lambda x: last,
+        "method": "SLSQP",
+        "bounds": [(0.0, 1.0)] * count + [(0.0, 2.0)] * (count - 1),
+        "constraints": every,
+        "options": {"maxiter": 300, "ftol": 1e-12},
+    }
+
+    def duration(x: NDArray[np.float64]) -> float:
+        return float(x[-1])
+
     best, met = Sequential(math.inf, 0, np.zeros(0), np.zeros(0)), 0
     for _ in range(starts):
         leads = np.cumsum(random.uniform(0.2, 1.8, count - 1))
         x = np.concatenate([random.dirichlet(np.full(count, 3.0)), leads * (random.uniform(0.8, 1.1) / leads[-1])])
-        answer = minimize(
-            lambda x: float(last @ x),
-            x,
-            jac=lambda x: last,
-            method="SLSQP",
-            bounds=[(0.0, 1.0)] * count + [(0.0, 2.0)] * (count - 1),
-            constraints=every,
-            options={"maxiter": 300, "ftol": 1e-12},
-        )
+        answer = minimize(duration, x, **settings)
         if max(missed(answer.x), abs(float(total @ answer.x) - 1.0)) < 1e-9 and answer.x.min() >= -1e-9:
             met += 1
             if answer.x[-1] * scale < best.duration:

@@ -1,7 +1,7 @@
 """Best of several runs, one run, and one row of output; importing this leaves linear algebra one thread.
 
-The matrices here are small: with several threads OpenBLAS is slower, and its times depend on what else the machine does.
-It reads its setting when NumPy is first imported, so a script that was started without it is started again.
+The matrices here are small: with several threads OpenBLAS is slower, and its times depend on what else the machine
+does. It reads its setting when NumPy is first imported, so a script that was started without it is started again.
 """
 
 from __future__ import annotations

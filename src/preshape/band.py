@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from numbers import Real
 from typing import TypeAlias
 
 from preshape.errors import InputError
 
 __all__ = ["Band", "BandsLike", "bands_of"]
-
-NARROWEST = 1e-12
-"""A band narrower than this, relative to its frequencies, is a point."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +45,7 @@ class Band:
             object.__setattr__(self, "most_damping", self.least_damping)
         for name in ("low", "high", "least_damping", "most_damping"):
             value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
                 raise InputError(f"a band's {name} is {value!r}: give a finite number.")
             object.__setattr__(self, name, float(value))
         if not 0.0 < self.low <= self.high:
@@ -88,7 +86,7 @@ def bands_of(bands: BandsLike) -> tuple[Band, ...]:
     if isinstance(given, Band):
         return (given,)
     items = list(given) if isinstance(given, Iterable) and not isinstance(given, str | bytes) else [given]
-    if items and all(isinstance(item, int | float) for item in items):
+    if items and all(isinstance(item, Real) for item in items):
         items = [tuple(items)]
     found = []
     for item in items:

@@ -154,7 +154,7 @@ def settling(command: Command, mode: Mode) -> float:
 
 
 def test_a_notch_replaces_the_damping_of_the_mode() -> None:
-    """Settling to 5 % in .842, .462, .755 periods at z_p = .5, .7, 1 (z = .05), as w^2 / (s^2 + 2 z_p w s + w^2) does."""
+    """Settling to 5 % in .842, .462, .755 periods at z_p = .5, .7, 1 (z = .05): w^2 / (s^2 + 2 z_p w s + w^2)."""
     mode, dt = Mode(1.0, 0.05), 0.0002
     unit = step(1.0, dt=dt, rest=1.0)
     for pole, expected in ((0.5, 0.842), (0.7, 0.462), (1.0, 0.755)):

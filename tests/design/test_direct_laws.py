@@ -12,6 +12,7 @@ from preshape import Mode, Modes, Shaper, design
 from preshape.engine import is_proved_shortest
 from preshape.engine.basis import plain_rows
 from preshape.errors import InputError
+from preshape.plant import ModalPlant
 
 CHUNKS, CHUNK = 40, 50
 
@@ -54,6 +55,42 @@ def test_every_set_is_proved_and_leaves_nothing(chunk: int) -> None:
         assert (shaper.amplitudes > 0.0).all() and left(shaper, modes, orders) < 1e-9, case
         convolved = sum((order + 1) * mode.damped_period / 2.0 for mode, order in zip(modes, orders, strict=True))
         assert shaper.duration <= convolved * (1.0 + SAME), case
+
+
+def clustered_set(random: np.random.Generator) -> tuple[Modes, tuple[int, ...]]:
+    """1 to 12 modes, neighbours at least 1.001 apart, crowded into a range of any ratio up to 50."""
+    count, gaps = int(random.integers(1, 13)), np.zeros(1)
+    while gaps.min() < 1e-3:
+        width = np.exp(random.uniform(np.log(0.002 * count**2), np.log(np.log(50.0))))
+        logarithms = np.sort(random.uniform(0.0, width, count))
+        gaps = np.diff(logarithms, append=np.inf)
+    dampings = random.uniform(0.0, 0.2, count) * (random.random(count) < 0.7)
+    orders = (1,) * count if random.random() < 0.8 else tuple(int(q) for q in random.integers(0, 3, count))
+    return Modes(list(zip(np.exp(logarithms).tolist(), dampings.tolist(), strict=True))), orders
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("chunk", range(10))
+def test_clusters_are_proved_too_or_what_is_open_is_said(chunk: int) -> None:
+    """Ten modes within a few per cent differ by less than 1e-22: then, and only then, the shaper is not proved."""
+    random, unproved = np.random.default_rng([1990, chunk]), 0
+    for _ in range(CHUNK):
+        modes, orders = clustered_set(random)
+        shaper = design.direct(modes, orders)
+        case = f"{modes!r}, {orders}"
+        assert (shaper.amplitudes > 0.0).all() and left(shaper, modes, orders) < 1e-9, case
+        assert ModalPlant(modes).impulse_residual(shaper.times, shaper.amplitudes).max() < 1e-12, case
+        alone = [(order + 1) * mode.damped_period / 2.0 for mode, order in zip(modes, orders, strict=True)]
+        assert max(alone) * (1.0 - SAME) <= shaper.duration <= sum(alone) * (1.0 + SAME), case
+        if shaper.design.status == "optimal":
+            assert shaper.design.certificate is not None and shaper.design.certificate.holds, case
+            assert is_proved_shortest(shaper), case
+        else:
+            assert shaper.design.status == "feasible" and shaper.design.certificate is None, case
+            assert 0.0 < shaper.design.settings["gap"] < 1.0 and not is_proved_shortest(shaper), case
+            assert sum(orders) + len(orders) >= 12, case
+            unproved += 1
+    assert unproved <= 1
 
 
 @pytest.mark.slow

@@ -204,7 +204,7 @@ def test_levels_in_bounds_give_the_unity_magnitude_and_partial_sum_shapers_to_a_
         ({"bands": (0.1, 10.0)}, "too wide"),
         ({"bands": TWO, "dt": 0.3}, "coarser than half a period of 3.3 Hz: give dt below 0.1515"),
         ({"bands": TWO, "impulses": (-1.0, 1.0)}, "need a servo grid"),
-        ({"bands": TWO, "impulses": (1.0, 0.0), "dt": 0.01}, "cannot sum to 1"),
+        ({"bands": TWO, "impulses": (-1.0, -0.5), "dt": 0.01}, "cannot sum to 1"),
         ({"bands": TWO, "partial_sums": (0.0, 0.5), "dt": 0.01}, "cannot end at 1"),
         ({"bands": TWO, "at_most": 0}, "whole number"),
     ],

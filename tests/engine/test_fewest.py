@@ -168,7 +168,7 @@ def test_impulses_of_both_signs() -> None:
     assert np.abs(np.exp(-2j * np.pi * found.leads) @ found.amplitudes) < 1e-7
 
 
-@pytest.mark.parametrize("limits", [(-math.inf, math.inf), (-1.0, math.inf), (0.1, 1.0)])
+@pytest.mark.parametrize("limits", [(-math.inf, math.inf), (-1.0, math.inf)])
 def test_impulses_without_limits_are_refused(limits: tuple[float, float]) -> None:
     leads = np.arange(5) * 0.125
     programme = gather([ZeroVibration(Mode(1.0, 0.0)), ImpulsesBetween(*limits)], leads)

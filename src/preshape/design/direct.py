@@ -103,11 +103,9 @@ def _closed_form(modes: Modes, orders: tuple[int, ...]) -> Shaper | None:
 
 def _checked(near: Shaper, modes: Modes) -> Shaper:
     """A shaper that Newton's method can start from, or a clear refusal."""
-    proof = near.design.certificate
+    proof = near.design.certificate if isinstance(near, Shaper) else None
     if proof is None or proof.modes is None:
-        raise InputError(
-            f"near is a shaper of family {near.design.family!r} without a certificate: give one of design.direct."
-        )
+        raise InputError(f"near is {near!r}, without a certificate for modes: give a shaper of design.direct.")
     if len(proof.modes) != len(modes):
         raise InputError(f"near was designed for {len(proof.modes)} modes, not {len(modes)}: give one for as many.")
     return near

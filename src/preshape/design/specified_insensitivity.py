@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from numbers import Real
 
 from preshape.band import Band, BandsLike, bands_of
 from preshape.checks import not_negative, tolerance_of
@@ -36,7 +37,7 @@ def specified_insensitivity(
     bands: BandsLike,
     tolerance: float = 0.05,
     *,
-    impulses: tuple[float, float] = (0.0, math.inf),
+    impulses: tuple[float, float] | None = None,
     partial_sums: tuple[float, float] | None = None,
     at_most: int | None = None,
     dt: float | None = None,
@@ -49,11 +50,12 @@ def specified_insensitivity(
         Natural frequencies [Hz] and damping ratios [-]. :func:`bands_of_sets` makes them from measured sets of modes.
     tolerance : float
         V allowed [-], between 0 and 1.
-    impulses : (float, float)
-        Least and largest amplitude of an impulse [-]; positive by default. Others need `dt`, for without a grid two
-        opposite impulses close to each other are limited by nothing.
+    impulses : (float, float), optional
+        Least (0 or below) and largest amplitude of an impulse [-]; by default all are positive, unless `partial_sums`
+        are given. Others need `dt`, for without a grid two opposite impulses near each other are limited by nothing.
     partial_sums : (float, float), optional
-        Least and largest level of a shaped unit step [-], what the actuator must hold; needs `dt`.
+        Least and largest level of a shaped unit step [-], what the actuator must hold; needs `dt`. Impulses may be
+        negative then: ask for ``impulses=(0, inf)`` too if they must not.
     at_most : int, optional
         Most impulses allowed.
     dt : float, optional
@@ -92,12 +94,14 @@ def specified_insensitivity(
         "tolerance": limit,
         "bands": [[band.low, band.high, band.least_damping, band.highest_damping] for band in wanted],
     }
-    if impulses != (0.0, math.inf):
-        constraints.append(ImpulsesBetween(*impulses))
-        settings["impulses"] = list(impulses)
+    if impulses is not None:
+        low, high = _pair("impulses", impulses)
+        constraints.append(ImpulsesBetween(low, high))
+        settings["impulses"] = _finite(low, high)
     if partial_sums is not None:
-        constraints.append(PartialSumsBetween(*partial_sums))
-        settings["partial_sums"] = list(partial_sums)
+        low, high = _pair("partial_sums", partial_sums)
+        constraints.append(PartialSumsBetween(low, high))
+        settings["partial_sums"] = _finite(low, high)
     if at_most is not None:
         constraints.append(AtMostImpulses(at_most))
         settings["at_most"] = at_most
@@ -154,6 +158,18 @@ def bands_of_sets(sets: Iterable[ModesLike], spread: float = 0.0) -> tuple[Band,
     if not found:
         raise InputError("no set of modes was given: measure at least one.")
     return tuple(found)
+
+
+def _pair(name: str, limits: object) -> tuple[float, float]:
+    """Two numbers, infinite ones allowed."""
+    if isinstance(limits, list | tuple) and len(limits) == 2 and all(isinstance(limit, Real) for limit in limits):
+        return float(limits[0]), float(limits[1])
+    raise InputError(f"{name} is {limits!r}: give two numbers, the lower one first.")
+
+
+def _finite(low: float, high: float) -> list[float | None]:
+    """Limits as a file can hold them: no limit is None."""
+    return [limit if math.isfinite(limit) else None for limit in (low, high)]
 
 
 def _middles(bands: tuple[Band, ...]) -> Modes | None:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from preshape.band import Band
-from preshape.checks import tolerance_of, whole_number
+from preshape.checks import positive, tolerance_of, whole_number
 from preshape.errors import InputError
 from preshape.mode import Mode
 
@@ -124,12 +124,20 @@ class VibrationAtMost:
 
 @dataclass(frozen=True)
 class ImpulsesBetween:
-    """Every amplitude in [low, high] [-]; (0, inf) asks for a positive shaper."""
+    """Every amplitude in [low, high] [-]; (0, inf) asks for a positive shaper.
+
+    0 is always allowed, for it means that there is no impulse: low <= 0.
+    """
 
     low: float = 0.0
     high: float = math.inf
 
     def __post_init__(self) -> None:
+        if self.low > 0.0:
+            raise InputError(
+                f"impulses of at least {self.low:g} are not convex, since most places have none: give a lower limit of "
+                "0 or below, and limit their number instead."
+            )
         if not self.low < self.high or self.high <= 0.0:
             raise InputError(
                 f"impulses between {self.low:g} and {self.high:g} cannot sum to 1: give a lower limit below the upper "
@@ -200,8 +208,7 @@ class ServoGrid:
     dt: float
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.dt) and self.dt > 0.0):
-            raise InputError(f"dt is {self.dt!r}: give the servo period in seconds, above zero.")
+        object.__setattr__(self, "dt", positive("dt", self.dt, "s"))
 
     def rows(self, leads: NDArray[np.float64]) -> Rows:
         """Nothing: it chooses the leads."""

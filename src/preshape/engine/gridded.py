@@ -8,13 +8,21 @@ always do what fewer can.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape.engine.constraints import AtMostImpulses, Constraint, ImpulsesBetween, ServoGrid, VibrationAtMost
+from preshape.engine.constraints import (
+    AtMostImpulses,
+    Constraint,
+    ImpulsesBetween,
+    PartialSumsBetween,
+    ServoGrid,
+    VibrationAtMost,
+)
 from preshape.engine.edges import Edge, edges_of, vibration_peaks
 from preshape.engine.fewest import amplitudes_at, fewest
 from preshape.engine.programme import Programme, gather, solve
@@ -33,6 +41,13 @@ SMALL = (1e-4, 1e-6, 1e-8)
 
 MAXIMUM_EXCHANGES = 30
 
+WAITING = 1e-9
+"""V is measured at the last impulse. Where it only falls below the tolerance some time after the others (heavy
+damping), a last impulse of this size [-] marks when."""
+
+TIME_LIMIT, GROWTH = 20.0, 1.15
+"""Seconds for a search with a limit on the number of impulses, and from one number of slots to the next in it."""
+
 MOST_SLOTS = 4000
 """More slots than this make the programme too large to answer soon."""
 
@@ -47,14 +62,28 @@ class Gridded:
         [s] and [-].
     slots : int
         Grid steps from the first to the last impulse.
-    proved : bool
-        Whether one slot fewer is impossible; with a limit on the number of impulses the time may not suffice for that.
+    too_short : int
+        The largest number of slots known to be impossible; one fewer than `slots` when that is proved the least. With a
+        limit on the number of impulses the time may not suffice for that.
     """
 
     leads: NDArray[np.float64]
     amplitudes: NDArray[np.float64]
     slots: int
-    proved: bool
+    too_short: int
+
+    @property
+    def proved(self) -> bool:
+        """Whether one slot fewer is impossible."""
+        return self.too_short == self.slots - 1
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """Amplitudes at all leads of a number of slots, or None; whether None is certain."""
+
+    amplitudes: NDArray[np.float64] | None
+    certain: bool = True
 
 
 def shortest_on_grid(constraints: Sequence[Constraint], grid: ServoGrid, longest: float) -> Gridded | None:
@@ -70,45 +99,94 @@ def shortest_on_grid(constraints: Sequence[Constraint], grid: ServoGrid, longest
         Where to stop [s].
     """
     most = min(math.ceil(longest / grid.dt), MOST_SLOTS)
-    low, high = 0, 1
-    found = _at(constraints, grid, high)
-    while found is None:
+    limit = min((one.count for one in constraints if isinstance(one, AtMostImpulses)), default=math.inf)
+    found = _bisected(lambda slots: _at(constraints, grid, slots), grid, 0, most, 2.0)
+    if found is None or found.leads.size <= limit:
+        return found
+    end = time.monotonic() + TIME_LIMIT
+
+    def counted(slots: int) -> _Trial:
+        left = end - time.monotonic()
+        return _at(constraints, grid, slots, int(limit), left) if left > 0.0 else _Trial(None, False)
+
+    return _bisected(counted, grid, found.too_short, most, GROWTH)
+
+
+def _bisected(
+    trial_at: Callable[[int], _Trial], grid: ServoGrid, too_short: int, most: int, growth: float
+) -> Gridded | None:
+    """The fewest slots that a trial calls enough, above `too_short`; None when up to `most` are not."""
+    low, high, certain = too_short, too_short + 1, too_short
+    trial = trial_at(high)
+    while trial.amplitudes is None:
         if high >= most:
             return None
-        low, high = high, min(2 * high, most)
-        found = _at(constraints, grid, high)
+        certain = high if trial.certain else certain
+        low, high = high, min(max(high + 1, math.ceil(growth * high)), most)
+        trial = trial_at(high)
+    used = np.flatnonzero(trial.amplitudes)
+    amplitudes, high = trial.amplitudes[used], max(int(used[-1]), low + 1)
     while high - low > 1:
         middle = (low + high) // 2
-        trial = _at(constraints, grid, middle)
-        if trial is None:
-            low = middle
+        trial = trial_at(middle)
+        if trial.amplitudes is None:
+            low, certain = middle, max(certain, middle) if trial.certain else certain
         else:
-            high, found = middle, trial
-    return found
+            used = np.flatnonzero(trial.amplitudes)
+            amplitudes, high = trial.amplitudes[used], max(int(used[-1]), low + 1)
+    return Gridded(used * np.float64(grid.dt), amplitudes, high, certain)
 
 
-def _at(constraints: Sequence[Constraint], grid: ServoGrid, slots: int) -> Gridded | None:
-    """Amplitudes on a grid of so many slots, or None."""
+def _at(
+    constraints: Sequence[Constraint], grid: ServoGrid, slots: int, limit: int | None = None, seconds: float = 0.0
+) -> _Trial:
+    """Amplitudes on a grid of so many slots; no more than `limit` of them, looked for for some `seconds`."""
     leads = grid.leads(slots)
     asks = [one for one in constraints if isinstance(one, VibrationAtMost)]
     edges = tuple(edge for ask in asks for edge in edges_of([ask.band], ask.tolerance))
     others = [one for one in constraints if not isinstance(one, VibrationAtMost | ServoGrid)]
     if not any(isinstance(one, ImpulsesBetween) for one in others):
-        others.append(ImpulsesBetween(-1.0, 1.0))
+        span = _span(others)
+        others.append(ImpulsesBetween(-span, span))
     points = sampled_points(edges, float(leads[-1]))
     programme = gather([*others, *tolerated(points)], leads)
+    end = time.monotonic() + seconds
     for _ in range(MAXIMUM_EXCHANGES):
         amplitudes = _amplitudes(programme)
         if amplitudes is None:
-            return None
+            return _Trial(None)
+        if limit is not None and np.count_nonzero(amplitudes) > limit:
+            few = fewest(programme, amplitudes, at_most=limit, time_limit=end - time.monotonic())
+            if few.leads.size > limit:
+                return _Trial(None, few.at_least > limit)
+            amplitudes = np.zeros(leads.size)
+            amplitudes[np.searchsorted(leads, few.leads)] = few.amplitudes
+        amplitudes = _ended(edges, leads, amplitudes)
         missed = _missed(edges, leads, amplitudes, points)
         if not missed:
-            break
+            return _Trial(amplitudes)
         points = sorted([*points, *missed], key=lambda point: edges.index(point[0]))
         programme = gather([*others, *tolerated(points)], leads, programme.basis)
-    else:
-        return None
-    return _counted(programme, amplitudes, others, edges)
+    return _Trial(None, False)
+
+
+def _ended(edges: Sequence[Edge], leads: NDArray[np.float64], amplitudes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same with an impulse at lead 0: all moved there, or where that exceeds a tolerance a tiny one added."""
+    first = int(np.flatnonzero(amplitudes)[0])
+    if first == 0:
+        return amplitudes
+    moved = np.roll(amplitudes, -first)
+    if not _missed(edges, leads, moved, []):
+        return moved
+    ended = amplitudes.copy()
+    ended[0] = WAITING
+    return ended
+
+
+def _span(constraints: Sequence[Constraint]) -> float:
+    """What an impulse may be when nothing says: partial sums within limits differ by no more than these do."""
+    spans = [one.high - one.low for one in constraints if isinstance(one, PartialSumsBetween)]
+    return min((span for span in spans if math.isfinite(span)), default=1.0)
 
 
 def _amplitudes(programme: Programme) -> NDArray[np.float64] | None:
@@ -140,19 +218,3 @@ def _missed(
         for peak in vibration_peaks(edges, leads, amplitudes)
         if peak.excess > MISSED and (peak.edge, peak.w) not in points
     ]
-
-
-def _counted(
-    programme: Programme, amplitudes: NDArray[np.float64], others: Sequence[Constraint], edges: Sequence[Edge]
-) -> Gridded | None:
-    """The solution, with no more impulses than allowed."""
-    limit = min((one.count for one in others if isinstance(one, AtMostImpulses)), default=None)
-    used = np.flatnonzero(amplitudes)
-    slots = programme.leads.size - 1
-    if limit is None or used.size <= limit:
-        return Gridded(programme.leads[used] - programme.leads[used[0]], amplitudes[used], slots, True)
-    few = fewest(programme, amplitudes, at_most=limit)
-    if few.leads.size > limit or _missed(edges, few.leads, few.amplitudes, []):
-        return None
-    order = np.argsort(few.leads)
-    return Gridded(few.leads[order] - few.leads[order[0]], few.amplitudes[order], slots, few.proved)

@@ -26,7 +26,7 @@ from preshape.engine.constraints import (
     ZeroVibration,
 )
 from preshape.engine.edges import edges_of, largest_vibration
-from preshape.engine.gridded import shortest_on_grid
+from preshape.engine.gridded import MOST_SLOTS, shortest_on_grid
 from preshape.engine.limited import shortest_limited
 from preshape.engine.shortest import Shortest, shortest_positive
 from preshape.engine.tolerant import MEETS, shortest_tolerant
@@ -123,8 +123,17 @@ def _outcome(
     bounds = [one for one in constraints if isinstance(one, ImpulsesBetween)]
     signed = [one for one in bounds if (one.low, one.high) != (0.0, math.inf)]
     levels = [one for one in constraints if isinstance(one, PartialSumsBetween | ResponseBetween)]
+    if prefer is not None and (grids or asks):
+        raise InputError(
+            "prefer chooses among equally short shapers of zero vibration with impulses anywhere: leave it out, or "
+            "limit the number of impulses."
+        )
     if grids:
         free = bool(signed or levels)
+        if limits and not (free or zeros):
+            anywhere = _outcome([one for one in constraints if one not in grids], zeros, asks, None)
+            if anywhere.status == "infeasible":  # then on a grid too, where to find that out takes longer
+                return anywhere
         return _on_grid(constraints if free else [*constraints, ImpulsesBetween(0.0)], grids[0], zeros, asks)
     if signed or levels:
         raise InputError(
@@ -156,8 +165,8 @@ def _limited(optimum: Shortest, zeros: Sequence[ZeroVibration], asks: Sequence[V
     """The shortest found with at most `count` impulses."""
     if zeros:
         raise InputError(
-            f"{count} impulses are too few for zero vibration here, which takes {optimum.times.size}: allow as many, "
-            "or tolerate vibration in bands instead."
+            f"the shortest shaper with zero vibration here has {optimum.times.size} impulses, more than {count}: allow "
+            "as many, or give a servo grid, on which fewer are looked for."
         )
     edges = [edge for ask in asks for edge in edges_of([ask.band], ask.tolerance)]
     duration = float(optimum.times[-1])
@@ -191,6 +200,22 @@ def _on_grid(
         )
         return Outcome("infeasible", np.zeros(0), np.zeros(0), math.nan, reason)
     found = shortest_on_grid(constraints, grid, LONGEST / lowest)
+    counts = [one.count for one in constraints if isinstance(one, AtMostImpulses)]
+    if found is None and counts:
+        more = _on_grid([one for one in constraints if not isinstance(one, AtMostImpulses)], grid, zeros, asks)
+        if more.status == "infeasible":
+            return more
+        reason = (
+            f"no shaper with at most {min(counts)} impulses was found on a grid of {grid.dt:g} s; {more.times.size} "
+            f"impulses do it in {more.times[-1]:.6g} s: allow as many, or tolerate more."
+        )
+        return Outcome("infeasible", np.zeros(0), np.zeros(0), math.nan, reason)
+    if found is None and MOST_SLOTS * grid.dt < LONGEST / lowest:
+        reason = (
+            f"no shaper of up to {MOST_SLOTS} slots of {grid.dt:g} s, {MOST_SLOTS * grid.dt:g} s, meets these limits, "
+            "and more are too many to be solved soon: give a coarser grid."
+        )
+        return Outcome("infeasible", np.zeros(0), np.zeros(0), math.nan, reason)
     if found is None:
         reason = (
             f"no shaper of up to {LONGEST:g} periods of {lowest:g} Hz on a grid of {grid.dt:g} s meets these limits: "
@@ -199,4 +224,5 @@ def _on_grid(
         return Outcome("infeasible", np.zeros(0), np.zeros(0), math.nan, reason)
     times = found.leads[-1] - found.leads[::-1]
     status = "optimal" if found.proved else "feasible"
-    return Outcome(status, times, found.amplitudes[::-1], 0.0 if found.proved else math.nan)
+    gap = 0.0 if found.proved else 1.0 - (found.too_short + 1) / found.slots
+    return Outcome(status, times, found.amplitudes[::-1], gap)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import astuple
+
 import numpy as np
 
 from preshape.band import Band
@@ -46,6 +48,8 @@ def is_proved_shortest(shaper: Shaper) -> bool:
     proof = shaper.design.certificate
     if proof is None or not _same_end(proof, shaper) or not _is_about(proof, shaper):
         return False
+    if not np.isfinite([*proof.coefficients, *(point.multiplier for point in proof.points)]).all():
+        return False
     leads, amplitudes = shaper.duration - shaper.times[::-1], shaper.amplitudes[::-1]
     if not (amplitudes > 0.0).all():
         return False
@@ -77,6 +81,8 @@ def _is_about(proof: Certificate, shaper: Shaper) -> bool:
     if proof.modes is None:
         tolerance = shaper.design.settings.get("tolerance")
         if not proof.bands or not proof.points or not isinstance(tolerance, float):
+            return False
+        if [list(astuple(band)) for band in proof.bands] != shaper.design.settings.get("bands"):
             return False
         edges = edges_of(proof.bands, tolerance)
         leads = shaper.duration - shaper.times[::-1]
