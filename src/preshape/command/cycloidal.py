@@ -30,7 +30,7 @@ def cycloidal(
     rest: float = 0.0,
     quantity: str = "position [m]",
 ) -> Command:
-    """A cycloidal cam: an undamped mode keeps |sin(pi r)| / (pi r |1 - r^2|) of the distance, r = w T / 2 pi.
+    """A cycloidal cam: an undamped mode keeps abs(sin(pi r) / (pi r (1 - r^2))) of the distance, r = w T / 2 pi.
 
     Parameters
     ----------

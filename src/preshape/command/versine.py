@@ -30,7 +30,7 @@ def versine(
     rest: float = 0.0,
     quantity: str = "position [m]",
 ) -> Command:
-    """Half a cosine in position: an undamped mode keeps |cos(pi r)| / |1 - 4 r^2| of the distance, r = w T / 2 pi.
+    """Half a cosine in position: an undamped mode keeps abs(cos(pi r) / (1 - 4 r^2)) of the distance, r = w T / 2 pi.
 
     Parameters
     ----------

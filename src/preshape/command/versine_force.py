@@ -44,7 +44,7 @@ def versine_force(
     rest: float = 0.0,
     quantity: str = "position [m]",
 ) -> Command:
-    """Accelerates as 1 - cos: an undamped mode keeps what bang-bang leaves, divided by |1 - (w T / 4 pi)^2|.
+    """Accelerates as 1 - cos: an undamped mode keeps what bang-bang leaves, divided by abs(1 - (w T / 4 pi)^2).
 
     Parameters
     ----------
