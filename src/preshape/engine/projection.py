@@ -29,7 +29,7 @@ EXCHANGED = 1e-9
 SUPPORT = 1e-14
 """Weights below this are no impulses."""
 
-MAXIMUM_EXCHANGES, MESH_EXCHANGES = 40, 120
+MAXIMUM_EXCHANGES = 40
 
 STALLED = 3
 """So many exchanges in a row that come no nearer: the rest is rounding, and they would go round in circles."""
@@ -98,17 +98,16 @@ def nearest_on_mesh(
     there is none on the mesh: the same answer as :func:`nearest_on`, in a fraction of its time. The fraction
     `gap` of its bound may be missing. Also the indices of the impulses.
     """
-    among, closest, stalled = np.zeros(mesh.size, dtype=bool), np.inf, 0
+    among, before = np.zeros(mesh.size, dtype=bool), np.inf
     among[start] = True
-    for _ in range(MESH_EXCHANGES):
+    for _ in range(MAXIMUM_EXCHANGES):
         chosen = np.flatnonzero(among)
         nearest = nearest_on(basis, mesh[chosen], rows[:, chosen])
         if nearest.feasible:
             return nearest, np.searchsorted(mesh, nearest.leads)
-        stalled = 0 if nearest.distance < closest else stalled + 1
-        if stalled == STALLED:
-            return nearest, np.searchsorted(mesh, nearest.leads)
-        closest = min(closest, nearest.distance)
+        if nearest.distance >= before:
+            break  # rounding: the exchange would go round in circles
+        before = nearest.distance
         p = nearest.multipliers @ rows
         if p.min() >= nearest.distance * (1.0 - gap):
             return nearest, np.searchsorted(mesh, nearest.leads)
@@ -117,7 +116,7 @@ def nearest_on_mesh(
         low[:-1] &= p[:-1] <= p[1:]
         if not (low & ~among).any():
             return nearest, np.searchsorted(mesh, nearest.leads)
-        among = low | among if stalled else low
+        among = low
         among[np.searchsorted(mesh, nearest.leads)] = True
     nearest = nearest_on(basis, mesh, rows)
     return nearest, np.searchsorted(mesh, nearest.leads)
