@@ -16,6 +16,7 @@ from preshape import Modes, Shaper, design
 from preshape.engine import is_proved_shortest
 from preshape.engine.basis import Basis
 from preshape.engine.certify import exclusion_of
+from preshape.engine.verify import basis_of
 from preshape.errors import InputError
 from preshape.provenance import Certificate
 
@@ -187,6 +188,53 @@ def test_a_true_certificate_does_not_prove_another_shaper() -> None:
     # The shaper of order 1 meets order 0 as well, but it is not the shortest that does.
     lower = replace(shaper.design, certificate=zv.design.certificate)
     assert not is_proved_shortest(Shaper(shaper.times, shaper.amplitudes, lower))
+
+
+@pytest.mark.parametrize("apart", [1e-6, 1e-5])
+def test_a_shaper_that_misses_what_scaled_rows_hardly_show_is_refused(apart: float) -> None:
+    """ZVD for one mode, said to be for that mode and one beside it: 1e-11 of vibration there, and half a second short.
+
+    Everything else is true: its polynomial is in the span of the functions, not negative, zero at the impulses.
+    """
+    one = design.direct((1.0, 0.0))
+    proof, two = one.design.certificate, Modes([(1.0, 0.0), (1.0 + apart, 0.0)])
+    assert proof is not None
+    basis, leads = Basis(two, (1, 0), proof.reference), np.linspace(0.0, 1.0, 400)
+    c = np.linalg.lstsq(basis(leads).T, proof.polynomial(1.0 - leads), rcond=None)[0]
+    coefficients = basis.coefficients(c)
+    wrong = replace(proof, modes=two, orders=(1, 0), groups=basis.groups, coefficients=coefficients)
+    np.testing.assert_allclose(wrong.polynomial(leads), proof.polynomial(leads), rtol=0.0, atol=1e-12)
+    assert plain(two, (1, 0), 1.0 - one.times, 1.0)[-2:] @ one.amplitudes == pytest.approx(0.0, abs=1e-9)
+    assert not is_proved_shortest(Shaper(one.times, one.amplitudes, replace(one.design, modes=two, certificate=wrong)))
+    assert design.direct(two, (1, 0)).duration == pytest.approx(1.5, rel=1e-4)
+
+
+def test_functions_that_were_left_out_as_dependent_prove_nothing() -> None:
+    """42 functions of which doubles see 24: those are met in 6.0 s by what misses the others, met in 10.5 s."""
+    near, orders = Modes([(1.0, 0.0), (1.0005, 0.0), (1.001, 0.0)]), (6, 6, 6)
+    few = Basis(near, orders, 6.2, ())
+    assert few.size < 42
+    _, proof = made("linear MACE")
+    coefficients = few.coefficients(np.eye(few.size)[0])
+    wrong = replace(proof, modes=near, orders=orders, groups=(), coefficients=coefficients, reference=6.2, duration=6.0)
+    assert basis_of(wrong) is None
+
+
+@pytest.mark.parametrize("name", ["linear MACE", "dense"])
+@pytest.mark.parametrize("factor", [1e-12, 1e-3, 1e3, 1e300])
+def test_a_reference_out_of_all_proportion_is_refused_at_once(name: str, factor: float) -> None:
+    """Else a file could ask for a series of a million terms, or for one that overflows."""
+    shaper, proof = made(name)
+    assert basis_of(proof) is not None
+    assert basis_of(replace(proof, reference=factor * proof.reference)) is None
+    assert not is_proved_shortest(tampered(shaper, reference=factor * proof.reference))
+
+
+def test_groups_of_modes_that_are_far_apart_are_refused() -> None:
+    """Their divided differences, by power series, would be some other functions."""
+    _, proof = made("linear MACE")
+    assert basis_of(replace(proof, groups=((0, 1, 2),))) is None
+    assert basis_of(replace(proof, groups=((1,), (0, 2)))) is None
 
 
 def test_only_what_is_proved_counts() -> None:

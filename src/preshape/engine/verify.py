@@ -11,13 +11,24 @@ from preshape.engine.basis import Basis, plain_rows
 from preshape.engine.certify import SAME_LEAD, exclusion_of
 from preshape.engine.edges import edges_of, largest_vibration
 from preshape.engine.polynomial import Polynomial
+from preshape.engine.unresolved import is_resolved
+from preshape.kernel.divided_exponentials import RADIUS
 from preshape.provenance import EXCLUDED_AT, MINIMUM_ALLOWED, TOUCHING, Certificate, Tolerated
 from preshape.shaper import Shaper
 
-__all__ = ["is_proved_shortest"]
+__all__ = ["basis_of", "is_proved_shortest"]
 
 MET = 1e-10
 """Largest miss of the constraint integrals (rows scaled to 1) that counts as met by a shaper from a file."""
+
+MET_APART = 1e-8
+"""The same for orthonormal rows, which near-equal modes cannot hide in: of theirs, scaled rows show next to nothing."""
+
+NEARBY = 10.0
+"""The interval that a proof's functions are made for is not longer or shorter than the shaper by more than this."""
+
+MOST_PERIODS = 100_000.0
+"""A proof over more periods of its fastest mode than this is not looked at: it would take gigabytes."""
 
 KEPT = 1e-8
 """Vibration over a tolerance by less than this fraction is rounding."""
@@ -59,7 +70,9 @@ def is_proved_shortest(shaper: Shaper) -> bool:
         rows, _ = plain_rows(proof.modes, proof.orders, leads, shaper.duration)
         if np.abs(rows @ amplitudes).max() > MET:
             return False
-        basis = Basis(proof.modes, proof.orders, proof.reference, proof.groups)
+        basis = basis_of(proof)
+        if basis is None or np.abs(basis(leads) @ amplitudes).max() > max(MET_APART, 10.0 * basis.zero):
+            return False
         multipliers = basis.multipliers(np.array(proof.coefficients))
     rates = np.array([point.rate for point in proof.points], dtype=complex)
     waves = np.array([point.multiplier for point in proof.points], dtype=complex)
@@ -74,6 +87,26 @@ def is_proved_shortest(shaper: Shaper) -> bool:
         return False
     contacts = np.union1d(minima[values < TOUCHING * largest], leads)
     return exclusion_of(basis, proof.points, contacts, shaper.duration) > EXCLUDED_AT
+
+
+def basis_of(proof: Certificate) -> Basis | None:
+    """The functions that the proof is made of, if they are such as doubles tell apart on an interval like the shaper's.
+
+    Where a function was left out as dependent on the others, a shaper could miss it unseen; and divided differences of
+    rates far from each other are not what their series say.
+    """
+    assert proof.modes is not None
+    periods = proof.duration * max(mode.frequency for mode in proof.modes)
+    if not 1.0 / NEARBY <= proof.reference / proof.duration <= NEARBY or periods > MOST_PERIODS:
+        return None
+    poles = np.array([mode.pole for mode in proof.modes])
+    for group in proof.groups:
+        apart = np.abs(poles[list(group), None] - poles[None, list(group)]).max() * proof.reference / 2.0
+        if apart > 2.0 * RADIUS:
+            return None
+    basis = Basis(proof.modes, proof.orders, proof.reference, proof.groups)
+    full = basis.size == 2 * sum(order + 1 for order in proof.orders)
+    return basis if full and is_resolved(basis) else None
 
 
 def _is_about(proof: Certificate, shaper: Shaper) -> bool:
