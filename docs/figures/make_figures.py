@@ -14,7 +14,7 @@ from preshape.engine.basis import Basis
 from preshape.engine.polynomial import Polynomial
 from preshape.engine.projection import project
 from preshape.files import write_atomically
-from preshape.report.figures import ACCENT, INK, MUTED, SECOND, as_svg, new_figure, tidy
+from preshape.report.figures import ACCENT, INK, MUTED, SECOND, SOFT, as_svg, new_figure, tidy
 from preshape.vibration import residual_vibration, tolerated_bands
 
 if TYPE_CHECKING:
@@ -42,11 +42,17 @@ def certificate() -> Figure:
     axes[0, 0].plot(t, p / p.max(), color=ACCENT, linewidth=1.8)
     axes[0, 0].plot(shaper.times, np.zeros(len(shaper)), "o", color=INK, markersize=5, clip_on=False, zorder=3)
     tidy(axes[0, 0], "", "polynomial p, over its largest [-]", f"T* = {end:.3f} s: p touches zero at nine times")
+    axes[0, 0].tick_params(labelbottom=True)
     axes[1, 0].vlines(shaper.times, 0.0, shaper.amplitudes, color=ACCENT, linewidth=2.0)
     axes[1, 0].plot(shaper.times, shaper.amplitudes, "o", color=INK, markersize=5)
     tidy(axes[1, 0], "time [s]", "amplitude [-]", "... and there are the nine impulses")
     for axis in axes[:, 0]:
+        for time in shaper.times[:-1]:
+            axis.axvline(time, color=SOFT, linewidth=0.8, linestyle=":", zorder=0)
+    for axis in (*axes[:, 0], axes[0, 1]):
         axis.axvline(end, color=MUTED, linewidth=1.0, linestyle="--")
+    for axis in axes[0]:
+        axis.text(end + 0.12, 0.55, "T*", fontsize=9.5, color=INK)
     axes[1, 0].set_ylim(0.0, 1.25 * shaper.amplitudes.max())
     t = np.linspace(0.0, short, 2001)
     p = Polynomial(basis, apart.multipliers)(short - t)
@@ -71,6 +77,7 @@ def certificate() -> Figure:
     axes[0, 1].set_xlabel("time [s]", fontsize=9.5, color=INK)
     for axis in axes[0]:
         axis.set_ylim(-0.06, 1.05)
+    axes[0, 1].set_xlim(axes[0, 0].get_xlim())
     return figure
 
 
@@ -133,9 +140,11 @@ def insensitivity() -> Figure:
     left.axhline(5.0, color=INK, linewidth=1.0, linestyle=":")
     for low, high in ((0.9, 1.1), (2.7, 3.3)):
         left.axvspan(low, high, color="#e8e8e8", zorder=0)
-    left.plot([p.frequency for p in proof.points], [5.0] * len(proof.points), "o", color=INK, markersize=5)
+    left.plot([p.frequency for p in proof.points], [5.0] * len(proof.points), "o", color=INK, markersize=5, zorder=3)
     left.set_ylim(0.0, 30.0)
-    left.text(0.03, 5.6, "5 %", fontsize=9, color=INK)
+    left.text(0.0, 5.5, "tolerance", fontsize=9, color=INK)
+    for low, high in ((0.9, 1.1), (2.7, 3.3)):
+        left.text(0.5 * (low + high), 28.3, f"{low:g} to\n{high:g} Hz", ha="center", va="top", fontsize=9, color=INK)
     tidy(
         left, "natural frequency [Hz]", "residual vibration [%]", f"Two bands, {shaper.duration:.4f} s, proved shortest"
     )
@@ -152,7 +161,12 @@ def insensitivity() -> Figure:
         right.annotate(name, (width, duration), (width - 0.02, duration + 0.1), fontsize=9, color=INK, ha="right")
     right.plot([], [], "o", color=SECOND, label="closed forms")
     right.legend(fontsize=9, frameon=False, loc="lower right")
-    tidy(right, "width of the band over its middle [-]", "duration [periods]", "One undamped band at 5 %")
+    tidy(
+        right,
+        "insensitivity I: width of the band over its middle [-]",
+        "duration [periods]",
+        "One undamped band at 5 %",
+    )
     right.set_ylim(0.0, 1.1 * math.ceil(max(durations)))
     return figure
 
