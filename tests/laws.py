@@ -54,6 +54,8 @@ FAMILIES = (
     Family("ps_zvd", design.ps_zvd, 1, negative=True, partial_sums=(-1.0, 1.0)),
     Family("sna_zv 0.5", lambda modes: design.sna_zv(modes, 0.5), 0, negative=True, partial_sums=(0.25, 1.0)),
     Family("sna_zv 1.5", lambda modes: design.sna_zv(modes, 1.5), 0, negative=True, partial_sums=(-0.25, 1.25)),
+    Family("sd_zv 0.4", lambda modes: design.sd_zv(modes, 0.4), 0),
+    Family("sd_zv 0.15", lambda modes: design.sd_zv(modes, 0.15), 0),
     Family("convolved zvd", design.convolved, 1),
     Family("direct, order 0", lambda modes: design.direct(modes, 0), 0),
     Family("direct, order 1", design.direct, 1),

@@ -3,6 +3,7 @@
 from preshape import design, vibration
 from preshape.band import Band
 from preshape.mode import Mode, Modes
+from preshape.profile import Profile
 from preshape.provenance import Certificate, Design
 from preshape.shaper import Shaper
 
@@ -12,6 +13,7 @@ __all__ = [
     "Design",
     "Mode",
     "Modes",
+    "Profile",
     "Shaper",
     "design",
     "vibration",

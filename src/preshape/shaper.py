@@ -1,90 +1,91 @@
-"""Shaper: impulse times and amplitudes; what every design returns and everything else takes."""
+"""Shaper: impulses, and boxes between them; what every design returns and everything else takes."""
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from preshape.errors import InputError
 from preshape.files import write_atomically
-from preshape.kernel import sparse_convolve
 from preshape.provenance import Design
-from preshape.shaper_file import SCHEMA, from_plain, read_json, to_json, to_plain
+from preshape.shaper_command import Exact, Function, function_shaped, samples_shaped, taps_of
+from preshape.shaper_file import SCHEMA, boxes_from_plain, from_plain, read_json, to_json, to_plain
+from preshape.shaper_parts import (
+    Box,
+    GivenBoxes,
+    boxes_shifted,
+    check_impulses,
+    check_one_each,
+    check_sum,
+    checked_boxes,
+    counted,
+    frozen_vector,
+    merged_impulses,
+    part_lines,
+    sum_of,
+)
 
 __all__ = ["Shaper"]
 
-SUM_TOLERANCE = 1e-9
-"""How far the amplitudes' sum may be from 1 [-]."""
-
-COINCIDENT = 1e-9
-"""Impulses closer than this fraction of the shaper's duration are one: set at their centroid, where moving them
-changes the residual only in second order (below 1e-15). For opposite signs it would be first order: they must coincide
-to rounding."""
+Samples = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class Shaper:
-    """A sequence of impulses; convolved with any command it removes the vibration it was designed for.
+    """A sequence of impulses and boxes; convolved with any command it removes the vibration it was designed for.
 
     Parameters
     ----------
     times : array_like, shape (impulse,)
         Impulse times [s], increasing from 0.
     amplitudes : array_like, shape (impulse,)
-        Amplitudes [-], summing to 1 so that a shaped command ends where the command ends.
+        Amplitudes [-]; they and the boxes' shares sum to 1, so that a shaped command ends where the command ends.
     design : Design, optional
         Where it comes from.
+    boxes : iterable of (float, float, float), optional
+        Parts of constant density: start [s], end [s] and density [1/s] of each, one after the other. Most shapers have
+        none.
 
     Raises
     ------
     InputError
-        If the impulses do not obey these rules.
+        If the impulses or boxes do not obey these rules.
 
     Examples
     --------
     >>> shaper = Shaper([0.0, 0.5], [0.5, 0.5])
     >>> shaper.duration, shaper.centroid
     (0.5, 0.25)
+    >>> Shaper([0.0, 0.5], [0.25, 0.25], boxes=[(0.0, 0.5, 1.0)]).boxes[0].mass
+    0.5
     """
 
     times: NDArray[np.float64]
     amplitudes: NDArray[np.float64]
     design: Design = field(default_factory=Design)
+    boxes: tuple[Box, ...] = ()
 
-    def __init__(self, times: ArrayLike, amplitudes: ArrayLike, design: Design | None = None) -> None:
-        object.__setattr__(self, "times", _frozen_vector("times", times))
-        object.__setattr__(self, "amplitudes", _frozen_vector("amplitudes", amplitudes))
+    def __init__(
+        self, times: ArrayLike, amplitudes: ArrayLike, design: Design | None = None, boxes: GivenBoxes = ()
+    ) -> None:
+        object.__setattr__(self, "times", frozen_vector("times", times))
+        object.__setattr__(self, "amplitudes", frozen_vector("amplitudes", amplitudes))
         object.__setattr__(self, "design", design or Design())
-        if self.times.size != self.amplitudes.size:
-            raise InputError(
-                f"{self.times.size} times and {self.amplitudes.size} amplitudes: a shaper needs one of each an impulse."
-            )
-        if self.times[0] != 0.0:
-            raise InputError(f"the first impulse is at {self.times[0]:g} s: shift the times so that it is at 0.")
-        steps = np.diff(self.times)
-        if (steps <= 0.0).any():
-            late = int(np.argmax(steps <= 0.0)) + 1
-            raise InputError(
-                f"times must increase, but impulse {late + 1} at {self.times[late]:g} s does not come after "
-                f"{self.times[late - 1]:g} s: sort them, and add up the amplitudes of equal times."
-            )
-        total = float(self.amplitudes.sum())
-        if abs(total - 1.0) > SUM_TOLERANCE:
-            raise InputError(
-                f"the amplitudes sum to {total:.9g}, not 1: the command would not end where it should; "
-                "Shaper.normalised(times, amplitudes) divides them by their sum."
-            )
+        object.__setattr__(self, "boxes", checked_boxes(boxes))
+        check_impulses(self.times, self.amplitudes)
+        check_sum(self.amplitudes, self.boxes)
 
     @classmethod
-    def normalised(cls, times: ArrayLike, amplitudes: ArrayLike, design: Design | None = None) -> Shaper:
-        """The shaper with `amplitudes` of any positive sum, divided by it; equal times are merged.
+    def normalised(
+        cls, times: ArrayLike, amplitudes: ArrayLike, design: Design | None = None, boxes: GivenBoxes = ()
+    ) -> Shaper:
+        """The shaper with weights of any positive sum, divided by it; equal times are merged.
 
         Parameters
         ----------
@@ -92,29 +93,43 @@ class Shaper:
             Impulse times [s], in any order; the earliest becomes 0.
         amplitudes : array_like, shape (impulse,)
             Weights of any unit.
+        design : Design, optional
+            Where it comes from.
+        boxes : iterable of (float, float, float), optional
+            Start [s], end [s] and density [unit of the weights / s] of parts of constant density.
 
         Raises
         ------
         InputError
             If the sum is not above zero, or as for Shaper.
         """
-        t, a = _frozen_vector("times", times), _frozen_vector("amplitudes", amplitudes)
-        if t.size != a.size:
-            raise InputError(f"{t.size} times and {a.size} amplitudes: a shaper needs one of each an impulse.")
-        total = float(a.sum())
+        t, a = frozen_vector("times", times), frozen_vector("amplitudes", amplitudes)
+        check_one_each(t, a)
+        parts = checked_boxes(boxes, float(t.min()))
+        total = sum_of(a, parts)
         if total <= 0.0:
             raise InputError(f"the amplitudes sum to {total:g}: a shaper's sum must be above zero, or nothing moves.")
-        return cls(*_merged(t - t.min(), a / total), design)
+        scaled = [box._replace(density=box.density / total) for box in parts]
+        return cls(*merged_impulses(t - t.min(), a / total, bool(parts)), design, scaled)
+
+    def with_design(self, design: Design) -> Shaper:
+        """The same impulses and boxes, with another record of where they come from."""
+        return Shaper(self.times, self.amplitudes, design, self.boxes)
 
     @property
     def duration(self) -> float:
-        """Time from the first to the last impulse [s]: what shaping adds to a move."""
-        return float(self.times[-1])
+        """Time from the first impulse to the end of the last part [s]: what shaping adds to a move."""
+        return max(float(self.times[-1]), *(box.end for box in self.boxes[-1:]), 0.0)
 
     @property
     def centroid(self) -> float:
-        """Amplitude-weighted mean of the impulse times [s]: the delay at constant speed."""
-        return float(self.times @ self.amplitudes)
+        """Weighted mean of the times [s]: the delay at constant speed."""
+        return float(self.times @ self.amplitudes) + sum(0.5 * (b.start + b.end) * b.mass for b in self.boxes)
+
+    @property
+    def magnitude(self) -> float:
+        """Sum of the sizes of all parts [-]: 1 for a positive shaper; it amplifies no frequency by more."""
+        return sum_of(np.abs(self.amplitudes), [box._replace(density=abs(box.density)) for box in self.boxes])
 
     def __len__(self) -> int:
         return self.times.size
@@ -122,13 +137,19 @@ class Shaper:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Shaper):
             return NotImplemented
-        return np.array_equal(self.times, other.times) and np.array_equal(self.amplitudes, other.amplitudes)
+        mine, others = (self.times, self.amplitudes), (other.times, other.amplitudes)
+        return all(map(np.array_equal, mine, others)) and self.boxes == other.boxes
 
     def __hash__(self) -> int:
-        return hash((self.times.tobytes(), self.amplitudes.tobytes()))
+        return hash((self.times.tobytes(), self.amplitudes.tobytes(), self.boxes))
 
     def convolve(self, other: Shaper, design: Design | None = None) -> Shaper:
         """Both shapers in a row, as one (also written ``a * b``): zero wherever either is zero.
+
+        Raises
+        ------
+        InputError
+            If both have boxes: two averages in a row are no average.
 
         Examples
         --------
@@ -138,8 +159,14 @@ class Shaper:
         """
         times = np.add.outer(self.times, other.times).ravel()
         amplitudes = np.multiply.outer(self.amplitudes, other.amplitudes).ravel()
-        times, amplitudes = _merged(times, amplitudes)
-        return Shaper(times, amplitudes / amplitudes.sum(), design)
+        times, amplitudes = merged_impulses(times, amplitudes, bool(self.boxes or other.boxes))
+        if not (self.boxes or other.boxes):
+            return Shaper(times, amplitudes / amplitudes.sum(), design)
+        if self.boxes and other.boxes:
+            raise InputError("both shapers have boxes, whose convolution is none: put one on a grid (design.on_grid).")
+        impulses, boxed = (other, self) if self.boxes else (self, other)
+        boxes = boxes_shifted(boxed.boxes, impulses.times, impulses.amplitudes)
+        return Shaper.normalised(times, amplitudes, design, boxes)
 
     def __mul__(self, other: Shaper) -> Shaper:
         return self.convolve(other) if isinstance(other, Shaper) else NotImplemented
@@ -148,29 +175,24 @@ class Shaper:
         """Delays [samples] and weights [-], both shape (tap,), on a grid of `dt` [s].
 
         An impulse between two samples is split linearly between them: the mean delay stays exact, and the residual
-        at a mode of frequency f rises only by about (pi f dt)^2 / 2.
+        at a mode of frequency f rises only by about (pi f dt)^2 / 2. A box counts as impulses at all its instants.
         """
-        if not (math.isfinite(dt) and dt > 0.0):
-            raise InputError(f"dt is {dt!r}: give the sample time in seconds, above zero.")
-        position = self.times / dt
-        whole = np.rint(position)
-        on_grid = np.abs(position - whole) <= COINCIDENT * np.maximum(1.0, whole)
-        lower = np.where(on_grid, whole, np.floor(position))
-        fraction = np.where(on_grid, 0.0, position - lower)
-        delays = np.concatenate([lower, lower + 1.0]).astype(np.intp)
-        weights = np.concatenate([self.amplitudes * (1.0 - fraction), self.amplitudes * fraction])
-        unique, where = np.unique(delays, return_inverse=True)
-        summed = np.bincount(where, weights)
-        keep = summed != 0.0
-        return unique[keep].astype(np.intp), summed[keep]
+        return taps_of(self.times, self.amplitudes, self.boxes, dt)
 
-    def shape(self, command: ArrayLike, dt: float, *, axis: int = -1, initial: ArrayLike = 0.0) -> NDArray[np.float64]:
-        """Convolve a sampled command with the impulses.
+    @overload
+    def shape(self, command: Exact) -> Exact: ...
+
+    @overload
+    def shape(self, command: ArrayLike, dt: float, *, axis: int = ..., initial: ArrayLike = ...) -> Samples: ...
+
+    def shape(self, command: Any, dt: float | None = None, *, axis: int = -1, initial: ArrayLike = 0.0) -> Any:
+        """Convolve a command with the shaper: a sampled one, or exactly a Profile.
 
         Parameters
         ----------
-        command : array_like, shape (..., time)
-            Samples of the command, any unit, evenly spaced; the last one is held afterwards.
+        command : array_like, shape (..., time), or Profile
+            Samples of the command, any unit, evenly spaced; the last one is held afterwards. Or a Profile: then the
+            rest is left out. A function of time is shaped by :meth:`shape_function`.
         dt : float
             Sample time [s].
         axis : int
@@ -181,7 +203,7 @@ class Shaper:
 
         Returns
         -------
-        ndarray, shape (..., time + ceil(duration / dt))
+        ndarray, shape (..., time + ceil(duration / dt)), or Profile
             Long enough to reach the command's end value.
 
         Raises
@@ -194,22 +216,47 @@ class Shaper:
         >>> Shaper([0.0, 0.5], [0.5, 0.5]).shape([1.0, 1.0, 1.0], dt=0.25).tolist()
         [0.5, 0.5, 1.0, 1.0, 1.0]
         """
-        u = np.asarray(command, dtype=float)
-        if u.ndim == 0 or u.size == 0:
-            raise InputError("the command has no samples: give an array with the time along `axis`.")
-        if not np.isfinite(u).all():
-            raise InputError("the command holds NaN or infinity: replace or cut those samples before shaping.")
-        u = np.moveaxis(u, axis, -1)
-        before = np.broadcast_to(np.asarray(initial, dtype=float), (*u.shape[:-1], 1))
-        delays, weights = self.taps(dt)
-        return np.moveaxis(sparse_convolve(u, delays, weights, before), -1, axis)
+        if hasattr(command, "shaped"):
+            if dt is not None:
+                raise InputError("this command is shaped exactly and has no samples: leave dt out.")
+            return command.shaped(self)
+        if dt is None or callable(command):
+            raise InputError("samples need their dt, a function shape_function: shape(samples, dt=...).")
+        return samples_shaped(command, self.taps(dt), axis, initial)
+
+    def shape_function(
+        self, command: Function, antiderivative: Function | None = None
+    ) -> Callable[[ArrayLike], NDArray[np.float64]]:
+        """The shaped command as a function of time, from the command as a function of time: exact, by evaluation.
+
+        Parameters
+        ----------
+        command : callable
+            Takes times [s] of any shape, also those before its start, and gives values of that shape.
+        antiderivative : callable, optional
+            Its integral from any fixed time on [unit s]; for a shaper with boxes, which average.
+
+        Raises
+        ------
+        InputError
+            If the shaper has boxes and no antiderivative is given.
+
+        Examples
+        --------
+        >>> ramp = Shaper([0.0, 0.5], [0.5, 0.5]).shape_function(lambda t: np.maximum(t, 0.0))
+        >>> ramp([0.25, 0.5, 1.0]).tolist()
+        [0.125, 0.25, 0.75]
+        """
+        return function_shaped(self.times, self.amplitudes, self.boxes, command, antiderivative)
 
     def to_dict(self) -> dict[str, Any]:
         """The shaper as plain data, schema ``preshape/shaper/1`` (docs/reference/shaper-file.md)."""
+        boxes = [box._asdict() for box in self.boxes]
         return {
             "schema": SCHEMA,
             "times": self.times.tolist(),
             "amplitudes": self.amplitudes.tolist(),
+            **({"boxes": boxes} if boxes else {}),
             "duration": self.duration,
             "design": to_plain(self.design),
         }
@@ -221,7 +268,8 @@ class Shaper:
         if schema != SCHEMA:
             raise InputError(f'the data say schema {schema!r}: a shaper has "schema": "{SCHEMA}".')
         design = from_plain(data.get("design", {}), Design)
-        return cls(data.get("times", []), data.get("amplitudes", []), design)
+        boxes = boxes_from_plain(data.get("boxes", []))
+        return cls(data.get("times", []), data.get("amplitudes", []), design, boxes)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the shaper to a JSON file; InputError when the place cannot be written."""
@@ -236,43 +284,16 @@ class Shaper:
         except InputError as error:
             raise InputError(f"{path}: {error}") from None
 
+    @property
+    def parts(self) -> str:
+        """How many impulses and boxes there are, in words."""
+        return counted(self.times, self.boxes)
+
     def __repr__(self) -> str:
-        return f"<Shaper {self.design.family}: {len(self)} impulses in {self.duration:.6g} s, {self.design.status}>"
+        return f"<Shaper {self.design.family}: {self.parts} in {self.duration:.6g} s, {self.design.status}>"
 
     def __str__(self) -> str:
-        lines = [repr(self)[1:-1], "", "  time [s]      amplitude [-]"]
-        lines += [f"  {t:<12.9f}  {a:+.9f}" for t, a in zip(self.times, self.amplitudes, strict=True)]
+        lines = [repr(self)[1:-1], "", *part_lines(self.times, self.amplitudes, self.boxes)]
         if self.design.modes is not None:
             lines += ["", "  designed for " + "; ".join(str(mode) for mode in self.design.modes)]
         return "\n".join(lines)
-
-
-def _frozen_vector(name: str, values: ArrayLike) -> NDArray[np.float64]:
-    """A read-only copy of `values` as a vector, or a clear refusal."""
-    try:
-        vector = np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must be numbers, one an impulse, not {values!r}.") from None
-    if vector.ndim != 1 or vector.size == 0:
-        raise InputError(f"{name} has shape {vector.shape}: give a flat list with at least one impulse.")
-    if not np.isfinite(vector).all():
-        raise InputError(f"{name} holds NaN or infinity at impulse {int(np.argmin(np.isfinite(vector))) + 1}.")
-    vector.flags.writeable = False
-    return vector
-
-
-def _merged(
-    times: NDArray[np.float64], amplitudes: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Sorted impulses, coincident ones added up at their centroid."""
-    order = np.argsort(times, kind="stable")
-    t, a = times[order], amplitudes[order]
-    nearness = np.where(a[1:] * a[:-1] > 0.0, COINCIDENT, np.finfo(float).eps) * max(float(t[-1]), np.finfo(float).tiny)
-    group = np.concatenate([[0], np.cumsum(np.diff(t) > nearness)])
-    total = np.bincount(group, a)
-    size = np.bincount(group, np.abs(a))
-    first = t[np.flatnonzero(np.diff(group, prepend=-1.0))]
-    offset = np.bincount(group, np.abs(a) * (t - first[group]))
-    centre = first + offset / np.where(size > 0.0, size, 1.0)
-    keep = total != 0.0
-    return centre[keep] - centre[keep][0], total[keep]

@@ -15,8 +15,9 @@ import msgspec
 
 from preshape.errors import InputError
 from preshape.mode import Mode, Modes
+from preshape.shaper_parts import Box
 
-__all__ = ["SCHEMA", "from_plain", "read_json", "to_json", "to_plain"]
+__all__ = ["SCHEMA", "boxes_from_plain", "from_plain", "read_json", "to_json", "to_plain"]
 
 SCHEMA = "preshape/shaper/1"
 
@@ -37,6 +38,14 @@ def from_plain(data: object, kind: type[T]) -> T:
         return msgspec.convert(data, kind, dec_hook=_decode)
     except msgspec.ValidationError as error:
         raise InputError(f"not a {SCHEMA} shaper: {error}.") from None
+
+
+def boxes_from_plain(data: object) -> list[Box]:
+    """Boxes from plain data, a list of start [s], end [s], density [1/s] by name."""
+    rows = from_plain(data, list[dict[str, float]])
+    if any(row.keys() != set(Box._fields) for row in rows):
+        raise InputError(f"not a {SCHEMA} shaper: a box has the fields {', '.join(Box._fields)} and no others.")
+    return [Box(**row) for row in rows]
 
 
 def to_json(data: Mapping[str, Any]) -> str:

@@ -38,6 +38,8 @@ __all__ = ["command"]
 @click.option("--order", type=int, metavar="Q", help="Vanishing derivatives (zvdk, direct, mesh).")
 @click.option("--humps", type=int, metavar="K", help="Number of humps (k_hump_ei).")
 @click.option("--negative-amplitude", type=float, metavar="B", help="Size of the negative impulse (sna_zv), as 0.5.")
+@click.option("--deflection-ratio", type=float, metavar="R", help="Deflection while moving, of the unshaped (sd_zv).")
+@click.option("--form", type=click.Choice(["impulses", "box"]), help="Kind of sd_zv shaper.  [default: impulses]")
 @click.option(
     "--base", type=click.Choice(list(design.CLOSED_FAMILIES)), help="Family that is convolved.  [default: zvd]"
 )
@@ -74,7 +76,7 @@ def command(family: str, modes: tuple[Mode, ...], dt: float | None, json_file: s
     from preshape.cli.screens import shaper_screen
     from preshape.shaper_file import to_json
 
-    if family in ("mesh", "si"):
+    if family in ("mesh", "si", "sd_zv"):
         wishes["dt"], dt = dt, None
     shaper = _designed(family, modes, {name: value for name, value in wishes.items() if value is not None})
     if dt is not None:

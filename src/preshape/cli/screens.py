@@ -52,10 +52,12 @@ def shaper_screen(shaper: Shaper) -> None:
     """The impulses and where they come from."""
     screen = console()
     design = shaper.design
-    screen.print(
-        Text(f"{design.family}: {len(shaper)} impulses in {shaper.duration:.6g} s ({design.status})", style="bold")
-    )
+    screen.print(Text(f"{design.family}: {shaper.parts} in {shaper.duration:.6g} s ({design.status})", style="bold"))
     screen.print(_impulses(shaper))
+    for box in shaper.boxes:
+        screen.print(
+            f"box from {box.start:.9f} s to {box.end:.9f} s: {box.density:.9f} per second, {box.mass:.9f} in all"
+        )
     if design.modes is not None and design.residual is not None:
         bands = [str(Band(*band)) for band in design.settings.get("bands", ())]
         names = "; ".join(bands or [str(mode) for mode in design.modes])
@@ -115,8 +117,7 @@ def _rich_table(title: str, table: TextTable, styles: list[str | None], left: in
 def _excitation(shaper: Shaper) -> str:
     """What negative impulses do to modes that the shaper was not designed for."""
     if shaper.design.modes is None:
-        bound = float(abs(shaper.amplitudes).sum())
-        return f"negative impulses excite up to {bound:.3g} x what the command does: check unmodelled modes"
+        return f"negative impulses excite up to {shaper.magnitude:.3g} x what the command does: check unmodelled modes"
     known = [mode.frequency for mode in shaper.design.modes]
     gain = high_frequency_gain(shaper, min(known), 10.0 * max(known))
     return (

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from preshape.command.command import Command
 from preshape.command.shape import Limits, MoveShape, shaped_move
+from preshape.profile import Profile
 
 __all__ = ["BANG_BANG_SHAPE", "bang_bang"]
 
@@ -63,4 +66,6 @@ def bang_bang(
     0.4
     """
     limits = Limits(maximum_speed, maximum_acceleration, maximum_jerk)
-    return shaped_move(BANG_BANG_SHAPE, distance, duration, limits, dt=dt, rest=rest, quantity=quantity)
+    move = shaped_move(BANG_BANG_SHAPE, distance, duration, limits, dt=dt, rest=rest, quantity=quantity)
+    switches, level = np.array([0.0, 0.5, 1.0]) * move.duration, 4.0 * distance / move.duration**2
+    return replace(move, profile=Profile.steps(switches, level * np.array([1.0, -2.0, 1.0]), order=2))

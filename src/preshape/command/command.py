@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from preshape.checks import positive
 from preshape.errors import InputError
+from preshape.profile import Profile
 
 __all__ = ["Command"]
 
@@ -33,6 +34,8 @@ class Command:
     velocity, acceleration : array_like of float, shape (sample,), optional
         First and second derivative of `values` with respect to time [unit/s, unit/s^2], for moves. Where the
         acceleration jumps, the sample holds the value after the jump.
+    profile : Profile, optional
+        The command between the samples too, where it is a piecewise polynomial: shaped and simulated exactly.
 
     Raises
     ------
@@ -53,6 +56,7 @@ class Command:
     duration: float
     velocity: NDArray[np.float64] | None = None
     acceleration: NDArray[np.float64] | None = None
+    profile: Profile | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "dt", positive("dt", self.dt, "s"))

@@ -10,6 +10,7 @@ from preshape.checks import nonzero, not_negative, positive
 from preshape.command.checks import sample_count
 from preshape.command.command import Command
 from preshape.mode import ModesLike, one_mode
+from preshape.profile import Profile
 
 __all__ = ["posicast"]
 
@@ -49,4 +50,5 @@ def posicast(
     values = np.zeros(count)
     values[1:] = size / (1.0 + target.decay_per_half_period)
     values[second:] = size
-    return Command(dt=dt, values=values, quantity=quantity, duration=dt + half)
+    profile = Profile.steps([dt, dt + half], [values[1], size - values[1]])
+    return Command(dt=dt, values=values, quantity=quantity, duration=dt + half, profile=profile)

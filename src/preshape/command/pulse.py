@@ -7,6 +7,7 @@ import numpy as np
 from preshape.checks import nonzero, not_negative, positive
 from preshape.command.checks import sample_count, whole_samples
 from preshape.command.command import Command
+from preshape.profile import Profile
 
 __all__ = ["pulse"]
 
@@ -60,4 +61,6 @@ def pulse(
     held = sample_count(not_negative("rest", rest, "s"), dt)
     values = np.zeros(first + wide + 1 + held)
     values[first : first + wide] = height
-    return Command(dt=dt, values=values, quantity=quantity, duration=(first + wide) * dt)
+    end = (first + wide) * dt
+    profile = Profile.steps([first * dt, end], [height, -height])
+    return Command(dt=dt, values=values, quantity=quantity, duration=end, profile=profile)

@@ -7,6 +7,7 @@ import numpy as np
 from preshape.checks import nonzero, not_negative, positive
 from preshape.command.checks import sample_count, whole_samples
 from preshape.command.command import Command
+from preshape.profile import Profile
 
 __all__ = ["step"]
 
@@ -56,4 +57,6 @@ def step(
     held = sample_count(not_negative("rest", rest, "s"), dt)
     values = np.zeros(first + 1 + held)
     values[first:] = height
-    return Command(dt=dt, values=values, quantity=quantity, duration=first * dt)
+    return Command(
+        dt=dt, values=values, quantity=quantity, duration=first * dt, profile=Profile.steps([first * dt], [height])
+    )

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from preshape.checks import not_negative, positive
 from preshape.command.checks import sample_count
 from preshape.command.command import Command
+from preshape.profile import Profile
 
 __all__ = ["Segment", "symmetric_move"]
 
@@ -77,7 +78,26 @@ def symmetric_move(distance: float, half: Sequence[Segment], *, dt: float, rest:
         duration=duration,
         velocity=sign * velocity,
         acceleration=sign * acceleration,
+        profile=_profile(sign, half, knots),
     )
+
+
+def _profile(sign: float, half: Sequence[Segment], knots: NDArray[np.float64]) -> Profile:
+    """The whole move by its steps of acceleration and jerk; the second half is -a(T - t) and j(T - t) of the first."""
+    duration = 2.0 * float(knots[-1])
+    lasting = [
+        (float(start), segment) for start, segment in zip(knots[:-1], half, strict=True) if segment.duration > 0.0
+    ]
+    stretches = [(start, segment.acceleration, segment.jerk) for start, segment in lasting]
+    for start, segment in reversed(lasting):
+        end = segment.acceleration + segment.jerk * segment.duration
+        stretches.append((duration - start - segment.duration, -end, segment.jerk))
+    times, accelerations, jerks = np.array([*stretches, (duration, 0.0, 0.0)]).T
+    carried = np.concatenate([[0.0], accelerations[:-1] + jerks[:-1] * np.diff(times)])
+    kicks = accelerations - carried
+    kicks[np.abs(kicks) <= KNOT_SLACK * np.abs(accelerations).max()] = 0.0
+    steps = np.concatenate([kicks, np.diff(jerks, prepend=0.0)])
+    return Profile(np.tile(times, 2), sign * steps, np.repeat([2, 3], times.size))
 
 
 def _states(

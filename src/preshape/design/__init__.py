@@ -11,6 +11,7 @@ from preshape.design.mesh import interpreted, mesh, rounded, solved_from, squash
 from preshape.design.mzv import mzv
 from preshape.design.on_grid import on_grid
 from preshape.design.partial_sum import ps_zv, ps_zvd
+from preshape.design.specified_deflection import sd_zv
 from preshape.design.specified_insensitivity import bands_of_sets, specified_insensitivity
 from preshape.design.specified_negative_amplitude import sna_zv
 from preshape.design.symmetric import symmetric_three_modes, symmetric_two_modes
@@ -35,6 +36,7 @@ __all__ = [
     "ps_zv",
     "ps_zvd",
     "rounded",
+    "sd_zv",
     "sna_zv",
     "solved_from",
     "specified_insensitivity",

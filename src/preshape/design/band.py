@@ -45,7 +45,7 @@ def ei_for_band(low: float, high: float, tolerance: float = 0.05, damping: float
         if unit.high / unit.low >= high / low:
             shaper = k_hump_ei((low / unit.low, damping), humps, tolerance)
             settings = {**shaper.design.settings, "band": [low, high]}
-            return Shaper(shaper.times, shaper.amplitudes, replace(shaper.design, settings=settings))
+            return shaper.with_design(replace(shaper.design, settings=settings))
     raise InputError(
         f"no EI shaper with up to {MOST_HUMPS} humps keeps V at or below {tolerance:g} from {low:g} to {high:g} Hz: "
         "narrow the band, or raise the tolerance."

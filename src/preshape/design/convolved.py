@@ -41,4 +41,4 @@ def convolved(modes: ModesLike, family: str = "zvd", **settings: Any) -> Shaper:
     """
     shaper = family_named(family)(modes, **settings)
     design = replace(shaper.design, family="convolved", settings={"base": family, **shaper.design.settings})
-    return Shaper(shaper.times, shaper.amplitudes, design)
+    return shaper.with_design(design)

@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from preshape.errors import InputError
 from preshape.mode import Mode, Modes, ModesLike
 from preshape.provenance import Design
 from preshape.shaper import Shaper
 from preshape.vibration import residual_vibration
 
-__all__ = ["convolve_each", "recorded"]
+__all__ = ["convolve_each", "impulses_only", "recorded"]
 
 
 def convolve_each(
@@ -32,4 +33,14 @@ def recorded(shaper: Shaper, design: Design) -> Shaper:
     if design.modes is not None:
         frequencies, dampings = np.array([(mode.frequency, mode.damping) for mode in design.modes]).T
         residual = float(residual_vibration(shaper, frequencies, dampings).max())
-    return Shaper(shaper.times, shaper.amplitudes, replace(design, residual=residual))
+    return shaper.with_design(replace(design, residual=residual))
+
+
+def impulses_only(shaper: Shaper, what: str) -> Shaper:
+    """`shaper`, if it has no boxes; `what` cannot do with them."""
+    if shaper.boxes:
+        raise InputError(
+            f"{what} takes impulses only, and this shaper has parts of constant density: put it on a sample grid first "
+            "(design.on_grid)."
+        )
+    return shaper

@@ -10,6 +10,7 @@ from preshape.design.direct import direct
 from preshape.design.ei import ei, k_hump_ei, three_hump_ei, two_hump_ei
 from preshape.design.mzv import mzv
 from preshape.design.partial_sum import ps_zv, ps_zvd
+from preshape.design.specified_deflection import sd_zv
 from preshape.design.specified_negative_amplitude import sna_zv
 from preshape.design.unity_magnitude import um_ei, um_zv, um_zvd
 from preshape.errors import InputError
@@ -34,6 +35,7 @@ CLOSED_FAMILIES: Mapping[str, Callable[..., Shaper]] = MappingProxyType(
         "ps_zv": ps_zv,
         "ps_zvd": ps_zvd,
         "sna_zv": sna_zv,
+        "sd_zv": sd_zv,
     }
 )
 """One mode at a time; several modes by convolution."""

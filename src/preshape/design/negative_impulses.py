@@ -41,7 +41,7 @@ def warned(shaper: Shaper, highest: float) -> Shaper:
         "highest_partial_sum": float(sums.max()),
     }
     design = replace(shaper.design, settings={**shaper.design.settings, **warnings})
-    return Shaper(shaper.times, shaper.amplitudes, design)
+    return shaper.with_design(design)
 
 
 def timed(mode: Mode, amplitudes: tuple[float, ...], followed: Followed, what: str, remedy: str) -> Shaper:

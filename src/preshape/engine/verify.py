@@ -57,7 +57,7 @@ def is_proved_shortest(shaper: Shaper) -> bool:
     False
     """
     proof = shaper.design.certificate
-    if proof is None or not _same_end(proof, shaper) or not _is_about(proof, shaper):
+    if proof is None or shaper.boxes or not _same_end(proof, shaper) or not _is_about(proof, shaper):
         return False
     if not np.isfinite([*proof.coefficients, *(point.multiplier for point in proof.points)]).all():
         return False

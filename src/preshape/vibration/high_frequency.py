@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from preshape.checks import positive
 from preshape.errors import InputError
-from preshape.kernel import exponential_sum, exponential_sum_uniform
 from preshape.shaper import Shaper
+from preshape.vibration.transform import transform, transform_uniform
 
 __all__ = ["DECADE", "HighFrequencyGain", "high_frequency_gain"]
 
@@ -53,8 +53,8 @@ class HighFrequencyGain:
     low, high : float
         The range that was searched [Hz].
     bound : float
-        sum abs(a_i) [-], which abs(F) exceeds at no frequency, in the range or above it. Impulse times without a common
-        measure come as near to it as one likes, if one looks high enough.
+        sum abs(a_i), boxes included [-], which abs(F) exceeds at no frequency, in the range or above it. Impulse times
+        without a common measure come as near to it as one likes, if one looks high enough.
     """
 
     value: float
@@ -96,15 +96,13 @@ def high_frequency_gain(shaper: Shaper, above: float, up_to: float | None = None
     high = DECADE * low if up_to is None else positive("up_to", up_to, "Hz")
     if high <= low:
         raise InputError(f"the range {low:g} ... {high:g} Hz is empty: give an end above its start.")
-    bound = float(np.abs(shaper.amplitudes).sum())
+    bound = shaper.magnitude
     if shaper.duration == 0.0:
         return HighFrequencyGain(bound, low, low, high, bound)
     high = min(high, low + (MOST_SAMPLES - 2) / (SAMPLES_PER_RIPPLE * shaper.duration))
     count = math.ceil((high - low) * shaper.duration * SAMPLES_PER_RIPPLE) + 2
     step = (high - low) / (count - 1)
-    gains = np.abs(
-        exponential_sum_uniform(shaper.amplitudes, shaper.times, -2j * math.pi * low, -2j * math.pi * step, count)
-    )
+    gains = np.abs(transform_uniform(shaper, -2j * math.pi * low, -2j * math.pi * step, count))
     padded = np.concatenate([[0.0], gains, [0.0]])
     peak = (gains >= padded[:-2]) & (gains >= padded[2:]) & (gains >= gains.max() - RISE * bound)
     near = np.linspace(low, high, count)[peak]
@@ -127,6 +125,5 @@ def _summits(shaper: Shaper, near: NDArray[np.float64], step: float, low: float,
 
 def _transform(shaper: Shaper, frequencies: NDArray[np.float64], slope: bool = False) -> NDArray[np.complex128]:
     """F, or dF/df."""
-    weights = shaper.amplitudes * shaper.times if slope else shaper.amplitudes
-    values = exponential_sum(weights, shaper.times, np.multiply(-2j * np.pi, frequencies))
+    values = transform(shaper, np.multiply(-2j * np.pi, frequencies), moment=int(slope))
     return -2j * np.pi * values if slope else values

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from preshape.checks import tolerance_of
 from preshape.errors import InputError
-from preshape.kernel import exponential_sum
 from preshape.mode import ModesLike, one_mode
 from preshape.shaper import Shaper
 from preshape.vibration.residual import checked_frequency_and_damping, residual_vibration
+from preshape.vibration.transform import transform
 
 __all__ = ["Insensitivity", "insensitivity", "tolerated_bands", "total_insensitivity"]
 
@@ -187,14 +187,14 @@ def _curve_functions(
 ) -> tuple[Callable[[NDArray[np.float64]], NDArray[np.float64]], Callable[[NDArray[np.float64]], NDArray[np.float64]]]:
     """V(f) and d(V^2)/df as functions of frequencies [Hz] at one damping ratio."""
     rate = 2.0 * math.pi * complex(damping, math.sqrt(1.0 - damping**2))
-    times = shaper.times - shaper.duration
+    end = shaper.duration
 
     def value(f: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.abs(exponential_sum(shaper.amplitudes, times, np.multiply(rate, f)))
+        return np.abs(transform(shaper, np.multiply(rate, f), origin=end))
 
     def slope(f: NDArray[np.float64]) -> NDArray[np.float64]:
-        base = exponential_sum(shaper.amplitudes, times, np.asarray(rate * f))
-        change = rate * exponential_sum(shaper.amplitudes * times, times, np.asarray(rate * f))
+        base = transform(shaper, np.asarray(rate * f), origin=end)
+        change = rate * transform(shaper, np.asarray(rate * f), origin=end, moment=1)
         return 2.0 * np.real(base.conj() * change)
 
     return value, slope

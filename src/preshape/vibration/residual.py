@@ -3,7 +3,8 @@
 V(w, z) = exp(-z w t_N) |sum_i A_i exp((z w + i w sqrt(1 - z^2)) t_i)|   (Robertson eq. 1-3; mind the + sign)
 
 is the amplitude that mode (w, z) keeps after the last impulse at t_N, relative to what one unit impulse at t = 0 would
-leave. All of this library evaluates this one formula, with times counted from t_N so that nothing overflows.
+leave; a part of constant density adds its integral to the sum. All of this library evaluates this one formula, with
+times counted from t_N so that nothing overflows.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from preshape.errors import InputError
-from preshape.kernel import exponential_sum, exponential_sum_uniform
 from preshape.shaper import Shaper
+from preshape.vibration.transform import transform, transform_uniform
 
 __all__ = [
     "Sensitivity",
@@ -83,13 +84,9 @@ def residual_vibration(shaper: Shaper, frequency: ArrayLike, damping: ArrayLike 
     shape = np.broadcast_shapes(f.shape, z.shape)
     if z.ndim == 0 and f.ndim == 1 and (uniform := _uniform_step(f)) is not None:
         rate = 2.0 * math.pi * complex(float(z), math.sqrt(1.0 - float(z) ** 2))
-        values = exponential_sum_uniform(
-            shaper.amplitudes, shaper.times - shaper.duration, rate * float(f[0]), rate * uniform, f.size
-        )
-        return np.abs(values)
+        return np.abs(transform_uniform(shaper, rate * float(f[0]), rate * uniform, f.size, origin=shaper.duration))
     rates = 2.0 * np.pi * (f * z + 1j * f * np.sqrt(1.0 - z**2))
-    values = exponential_sum(shaper.amplitudes, shaper.times - shaper.duration, np.ravel(rates))
-    return np.abs(values).reshape(shape)
+    return np.abs(transform(shaper, np.ravel(rates), origin=shaper.duration)).reshape(shape)
 
 
 def sensitivity_curve(shaper: Shaper, frequencies: ArrayLike, damping: float = 0.0) -> Sensitivity:

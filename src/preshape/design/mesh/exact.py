@@ -16,7 +16,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape.design.each_mode import recorded
+from preshape.design.each_mode import impulses_only, recorded
 from preshape.design.mesh.problem import orders_of
 from preshape.design.mesh.verify import EXACT, misses
 from preshape.engine.basis import Basis, plain_rows
@@ -77,7 +77,7 @@ def solved_from(shaper: Shaper, order: int | Iterable[int] = 1) -> Shaper:
     >>> exact.design.status, len(exact), exact.design.residual < 1e-12
     ('exact', 5, True)
     """
-    modes = shaper.design.modes
+    modes = impulses_only(shaper, "Newton's method").design.modes
     if modes is None:
         raise InputError("this shaper does not know its modes: give one that a design function has made.")
     orders = orders_of(modes, order)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape.design.each_mode import recorded
+from preshape.design.each_mode import impulses_only, recorded
 from preshape.design.mesh.problem import GridProblem
 from preshape.design.mesh.verify import verified
 from preshape.engine.basis import Basis
@@ -103,6 +103,7 @@ def _places(shaper: Shaper, dt: float, neighbours: bool) -> tuple[NDArray[np.int
     """The slots that the impulses may use, increasing, and the amplitudes without optimisation."""
     if neighbours:
         return shaper.taps(dt)
+    impulses_only(shaper, "moving each impulse to the nearest slot")
     places, where = np.unique(np.rint(shaper.times / dt).astype(np.intp), return_inverse=True)
     return places, np.bincount(where, shaper.amplitudes).astype(float)
 

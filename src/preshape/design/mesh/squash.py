@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from preshape.checks import positive
-from preshape.design.each_mode import recorded
+from preshape.design.each_mode import impulses_only, recorded
 from preshape.errors import InputError
 from preshape.shaper import Shaper
 
@@ -79,6 +79,7 @@ def squashed(shaper: Shaper, dt: float, keep_grid: bool = True) -> Shaper:
 
 def slots_of(shaper: Shaper, dt: float) -> NDArray[np.intp]:
     """The slot of each impulse; InputError when one has none, or is negative."""
+    impulses_only(shaper, "combining neighbours")
     position = shaper.times / positive("dt", dt, "s")
     places = np.rint(position)
     off = np.abs(position - places)

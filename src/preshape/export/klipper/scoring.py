@@ -250,7 +250,7 @@ def remaining_fraction(
     threshold = spectrum.psd.max() / VIBRATION_REDUCTION
     before = np.maximum(spectrum.psd - threshold, 0.0).sum()
     # V cannot exceed the sum of |amplitudes|: bins that cannot reach the threshold need no exponential.
-    loud = spectrum.psd * np.abs(shaper.amplitudes).sum() > threshold
+    loud = spectrum.psd * shaper.magnitude > threshold
     relative = spectrum.frequencies[loud] / frequencies[:, np.newaxis]
     vibration = residual_vibration(shaper, relative[np.newaxis], ratios[:, np.newaxis, np.newaxis])
     left = np.maximum(vibration * spectrum.psd[loud] - threshold, 0.0).sum(axis=-1) / before
@@ -277,10 +277,14 @@ class CornerMoments:
     @classmethod
     def of(cls, shaper: Shaper) -> CornerMoments:
         """The moments of `shaper`."""
-        distance = shaper.times - shaper.centroid
+        distance, a = shaper.times - shaper.centroid, shaper.amplitudes
         late = np.maximum(distance, 0.0)
-        a = shaper.amplitudes
-        return cls(float(a @ distance**2), float(a @ late), float(a @ late**2))
+        moments = np.array([a @ distance**2, a @ late, a @ late**2])
+        for box in shaper.boxes:
+            start, end = box.start - shaper.centroid, box.end - shaper.centroid
+            s, e = max(start, 0.0), max(end, 0.0)
+            moments += box.density * np.array([(end**3 - start**3) / 3.0, (e**2 - s**2) / 2.0, (e**3 - s**3) / 3.0])
+        return cls(*moments.tolist())
 
     def smoothing(
         self, frequencies: NDArray[np.float64], acceleration: float, square_corner_velocity: float
