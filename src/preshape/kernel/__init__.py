@@ -1,17 +1,36 @@
 """The inner loops: what the rest of the library spends its time in."""
 
+from preshape.kernel.box_exponentials import box_exponentials
 from preshape.kernel.chebyshev_exponentials import chebyshev_derivative, chebyshev_values, orthonormal_series
 from preshape.kernel.divided_exponentials import DividedExponentials, near_rates
+from preshape.kernel.driven_extremum import Extremum, extremum
+from preshape.kernel.driven_output import DrivenOutput
+from preshape.kernel.driven_phasors import DrivenPhasors, driven_phasors, taylor_shifted
+from preshape.kernel.driven_settling import last_outside
+from preshape.kernel.driven_tail import free_phasors, rested, trend
 from preshape.kernel.exponential_sum import exponential_sum, exponential_sum_uniform
+from preshape.kernel.phi_functions import phi_functions
 from preshape.kernel.sparse_convolution import sparse_convolve
 
 __all__ = [
     "DividedExponentials",
+    "DrivenOutput",
+    "DrivenPhasors",
+    "Extremum",
+    "box_exponentials",
     "chebyshev_derivative",
     "chebyshev_values",
+    "driven_phasors",
     "exponential_sum",
     "exponential_sum_uniform",
+    "extremum",
+    "free_phasors",
+    "last_outside",
     "near_rates",
     "orthonormal_series",
+    "phi_functions",
+    "rested",
     "sparse_convolve",
+    "taylor_shifted",
+    "trend",
 ]

@@ -9,7 +9,7 @@ vibration.
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,7 +18,11 @@ from preshape.checks import positive
 from preshape.errors import InputError
 from preshape.mode import Modes, ModesLike
 from preshape.plant.checks import finite_row, gain_matrix, one_each, same_length
-from preshape.plant.response import Response
+from preshape.plant.response import Response, response_of
+
+if TYPE_CHECKING:
+    from preshape.plant.exact import Motion
+    from preshape.profile import Profile
 
 __all__ = ["ModalPlant"]
 
@@ -252,6 +256,18 @@ class ModalPlant:
 
         return residual_by_state(self.modes, *same_length("times", times, "amplitudes", amplitudes))
 
+    def motion(self, command: Profile) -> Motion:
+        """The exact motion under a Profile; its outputs: "output", or "output 1", ... when the gains name several."""
+        from preshape.plant.modal_motion import modal_motion
+
+        return modal_motion(self, command)
+
+    def retuned(self, frequency_ratio: float = 1.0, damping_ratio: float | None = None) -> ModalPlant:
+        """The plant with every frequency scaled by a ratio [-], and all damping ratios set to another if given [-]."""
+        from preshape.plant.modal_motion import retuned_modes
+
+        return ModalPlant(retuned_modes(self.modes, frequency_ratio, damping_ratio), self.gains, drive=self.drive)
+
     @property
     def _poles(self) -> NDArray[np.complex128]:
         return np.array([mode.pole for mode in self.modes])
@@ -278,19 +294,5 @@ class ModalPlant:
         ends: NDArray[np.complex128] | None = None,
     ) -> Response:
         """Turn phasors, shape (mode, sample), under the command `levels` into motion; `ends`: those of the residual."""
-        poles = self._poles[:, np.newaxis]
-        displacement = phasor.imag / poles.imag
-        velocity = phasor.real + poles.real * displacement
-        acceleration = (poles * phasor).real + poles.real * velocity + self._forces[:, np.newaxis] * levels
         last = phasor[:, -1] - self._settled * levels[-1] if ends is None else ends
-        residual = np.abs(last) / self._poles.imag
-        return Response(
-            times=times,
-            displacement=displacement,
-            velocity=velocity,
-            acceleration=acceleration,
-            output=self.gains @ displacement,
-            residual_amplitudes=residual,
-            output_residual=np.asarray(np.abs(self.gains) @ residual),
-            residual_time=end_time,
-        )
+        return response_of(times, phasor, levels, last, end_time, poles=self._poles, plant=(self._forces, self.gains))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Response"]
+__all__ = ["Response", "response_of"]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -43,3 +43,47 @@ class Response:
     residual_amplitudes: NDArray[np.float64]
     output_residual: NDArray[np.float64]
     residual_time: float
+
+
+def response_of(
+    times: NDArray[np.float64],
+    phasor: NDArray[np.complex128],
+    levels: NDArray[np.float64],
+    last: NDArray[np.complex128],
+    end_time: float,
+    *,
+    poles: NDArray[np.complex128],
+    plant: tuple[NDArray[np.float64], NDArray[np.float64]],
+) -> Response:
+    """The response that phasors describe.
+
+    Parameters
+    ----------
+    times, levels : ndarray, shape (sample,)
+        Times [s], and the command there.
+    phasor : ndarray of complex, shape (mode, sample)
+        q = x' - conj(s) x.
+    last : ndarray of complex, shape (mode,)
+        The free vibration after the command's end, at `end_time` [s].
+    end_time : float
+        When the command ended [s].
+    poles : ndarray of complex, shape (mode,)
+        s [1/s].
+    plant : pair of ndarray
+        What a unit command adds to each mode's right-hand side, shape (mode,), and the gains of the outputs.
+    """
+    forces, gains = plant
+    s = poles[:, np.newaxis]
+    displacement = phasor.imag / s.imag
+    velocity = phasor.real + s.real * displacement
+    residual = np.abs(last) / poles.imag
+    return Response(
+        times=times,
+        displacement=displacement,
+        velocity=velocity,
+        acceleration=(s * phasor).real + s.real * velocity + forces[:, np.newaxis] * levels,
+        output=gains @ displacement,
+        residual_amplitudes=residual,
+        output_residual=np.asarray(np.abs(gains) @ residual),
+        residual_time=end_time,
+    )
