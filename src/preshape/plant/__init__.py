@@ -8,6 +8,7 @@ from preshape.plant.deflection import (
     transient_deflection,
 )
 from preshape.plant.exact import Motion, Output, exact_motion
+from preshape.plant.flexible_body import FlexibleBody
 from preshape.plant.floating_oscillator import FloatingOscillator
 from preshape.plant.modal import ModalPlant
 from preshape.plant.positioned_mass import PositionedMass
@@ -16,6 +17,7 @@ from preshape.plant.response import Response
 __all__ = [
     "DeflectionSensitivity",
     "Extremum",
+    "FlexibleBody",
     "FloatingOscillator",
     "ModalPlant",
     "Motion",

@@ -10,6 +10,7 @@ from preshape.checks import not_negative, positive
 from preshape.errors import InputError
 from preshape.mode import Mode
 from preshape.plant.exact import Motion, Output, exact_motion
+from preshape.plant.flexible_body import FlexibleBody
 
 if TYPE_CHECKING:
     from preshape.profile import Profile
@@ -87,6 +88,11 @@ class FloatingOscillator:
         """The vibration of the deflection."""
         w = math.sqrt(self.stiffness * self._inverse_mass)
         return Mode(w / (2.0 * math.pi), self.damping / self.critical_damping)
+
+    @property
+    def flexible_body(self) -> FlexibleBody:
+        """The same as a rigid body with one mode, the deflection x1 - x2."""
+        return FlexibleBody(self.total_mass, self.mode, 1.0 / self.first_mass)
 
     def static_deflection(self, force: float) -> float:
         """The deflection [m] that a steady `force` [N] holds while it accelerates the whole: u / (m1 w^2)."""
