@@ -3,6 +3,7 @@
 from preshape.design.antiperiod import AntiperiodAnalysis, antiperiod, antiperiod_analysis
 from preshape.design.band import ei_for_band
 from preshape.design.convolved import convolved
+from preshape.design.deflection_limited import deflection_limited
 from preshape.design.derivative import zv, zvd, zvdd, zvdk
 from preshape.design.direct import direct
 from preshape.design.ei import ei, k_hump_ei, three_hump_ei, two_hump_ei
@@ -25,6 +26,7 @@ __all__ = [
     "antiperiod_analysis",
     "bands_of_sets",
     "convolved",
+    "deflection_limited",
     "direct",
     "ei",
     "ei_for_band",
