@@ -38,13 +38,18 @@ def confirmed(
     pivots: int = MAXIMUM_PIVOTS,
     steps: int = MAXIMUM_STEPS,
 ) -> Polished | None:
-    """The exact optimum near a start, or None: the equations hold, amplitudes are positive, p is nowhere negative."""
+    """The exact optimum near a start, or None: the equations hold, amplitudes are positive, p is nowhere negative.
+
+    Where p is negative by more than rounding, but by so little that a certificate would still do, an impulse is missing
+    all the same: it is looked for, and what would do is the answer if that fails.
+    """
     u, a, c = leads, amplitudes, multipliers
+    would_do: Polished | None = None
     for _ in range(pivots + 1):
         polished = polish(basis, u, a, c, steps)
         if polished.error > LARGE:
             if (merged := _merged(polished)) is None:
-                return None
+                return would_do
             u, a = merged
             c = polished.multipliers
             continue
@@ -52,23 +57,25 @@ def confirmed(
         if negative.any():
             keep = polished.amplitudes > min(float(polished.amplitudes.min()) / 2.0, -NOTHING)
             if keep.sum() < 2 or not keep[0]:
-                return None
+                return would_do
             u, a, c = polished.leads[keep], polished.amplitudes[keep], polished.multipliers
             continue
         if not polished.converged:
-            return None
+            return would_do
         polished = polished.without_empty_impulses()
         minima, values, largest = _lowest(basis, polished)
         if values.min() >= MINIMUM_ALLOWED * largest:
-            return replace(polished, minima=(minima, values, largest))
+            would_do = replace(polished, minima=(minima, values, largest))
+            if values.min() >= -basis.rounding:
+                return would_do
         lowest = float(minima[int(np.argmin(values))])
         place = int(np.searchsorted(polished.leads, lowest))
         u = np.insert(polished.leads, place, lowest)
         a = np.insert(polished.amplitudes, place, 0.0)
         c = polished.multipliers
         if np.diff(u).min() <= PRECISION * u[-1]:
-            return None
-    return None
+            return would_do
+    return would_do
 
 
 def _merged(polished: Polished) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
