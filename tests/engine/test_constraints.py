@@ -84,7 +84,7 @@ def test_what_asks_nothing_linear_has_no_rows() -> None:
 @pytest.mark.parametrize(
     ("make", "sentence"),
     [
-        (lambda: ImpulsesBetween(1.0, 0.5), "not convex"),
+        (lambda: ImpulsesBetween(1.0, 0.5), "cannot sum to 1"),
         (lambda: ImpulsesBetween(0.1, 0.5), "not convex, since most places have none"),
         (lambda: ImpulsesBetween(-1.0, 0.0), "cannot sum to 1"),
         (lambda: ImpulsesBetween(-1.0, -1.0), "cannot sum to 1"),

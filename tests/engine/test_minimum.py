@@ -62,6 +62,36 @@ def _both(found: object) -> tuple[np.ndarray, np.ndarray]:
     return found.times, found.amplitudes  # type: ignore[attr-defined]
 
 
+@pytest.mark.parametrize("longest", [0.5, 0.9, 1.2])
+def test_a_duration_that_is_too_short_names_the_shortest(longest: float) -> None:
+    ways = [
+        [VibrationAtMost(Band(0.9, 1.1), 0.05)],
+        [VibrationAtMost(Band(0.9, 1.1), 0.05), ServoGrid(0.1)],
+        [VibrationAtMost(Band(0.9, 1.1), 0.05), VibrationAtMost(Band(2.7, 3.3), 0.05), AtMostImpulses(5)],
+    ]
+    for asked in ways:
+        free = minimum_duration(asked)
+        found = minimum_duration(asked, longest=longest)
+        if free.times[-1] <= longest:
+            assert found.status == free.status and found.times[-1] == free.times[-1]
+        else:
+            assert found.status == "infeasible" and f"takes {free.times[-1]:.9g} s" in found.reason
+            assert "nan" not in found.reason
+
+
+def test_fewer_impulses_without_vibration_exist_although_the_shortest_shaper_has_more() -> None:
+    """1 and 10 Hz: four impulses in .5370 s, three in .5455 s. So three are not called too few; a grid finds them."""
+    zeros = [ZeroVibration(Mode(1.0)), ZeroVibration(Mode(10.0))]
+    four = minimum_duration(zeros)
+    assert four.times.size == 4 and four.times[-1] == pytest.approx(0.5370434719639722, rel=1e-9)
+    with pytest.raises(InputError, match="the shortest shaper .* has 4 impulses, more than 3: .* servo grid"):
+        minimum_duration([*zeros, AtMostImpulses(3)])
+    three = minimum_duration([*zeros, AtMostImpulses(3), ServoGrid(6.0 / 11.0 / 24.0)])
+    assert three.status == "optimal" and three.times.size == 3
+    assert three.times[-1] == pytest.approx(6.0 / 11.0, rel=1e-9)
+    assert max(left(three.times, three.amplitudes, f) for f in (1.0, 10.0)) < 1e-9
+
+
 def test_what_is_infeasible_says_why_and_what_would_do() -> None:
     short = minimum_duration([ZeroVibration(Mode(1.0), 1)], longest=0.8)
     assert short.status == "infeasible" and short.times.size == 0
@@ -76,6 +106,13 @@ def test_what_is_infeasible_says_why_and_what_would_do() -> None:
         minimum_duration([ImpulsesBetween(0.0)])
     with pytest.raises(InputError, match="need a servo grid"):
         minimum_duration([*TWO, ImpulsesBetween(-1.0, 1.0)])
+    with pytest.raises(InputError, match="prefer chooses among equally short shapers of zero vibration"):
+        minimum_duration([*TWO, ServoGrid(0.01)], prefer="fewest")
+    fine = minimum_duration([VibrationAtMost(Band(0.9, 1.1), 0.05), ServoGrid(1e-5)])
+    assert fine.status == "infeasible" and "give a coarser grid" in fine.reason
+    for grid in ([], [ServoGrid(0.02)]):
+        none = minimum_duration([*TWO, *grid, AtMostImpulses(2)])
+        assert none.status == "infeasible" and "zero vibration of order 1 takes at least 3" in none.reason
     with pytest.raises(InputError, match="prefer is 'nicest'"):
         minimum_duration(TWO, prefer="nicest")
 

@@ -103,7 +103,7 @@ class Basis:
         self._derivative[:size, :size] = self._derivative[size:, size:] = slope.real
         self._derivative[:size, size:], self._derivative[size:, :size] = -slope.imag, slope.imag
         phase = 1.0 + np.multiply.outer(np.abs(self._functions.rates), leads)
-        self._orthonormalise(self.raw(leads), np.eye(2 * size), np.concatenate([phase, phase]))
+        self._orthonormalise(self.raw(leads), None, np.concatenate([phase, phase]))
 
     def _with_series(self, leads: NDArray[np.float64]) -> None:
         self._functions = None
@@ -114,13 +114,14 @@ class Basis:
         self._orthonormalise(self.raw(leads), series, 1.0 + np.multiply.outer(np.arange(self._count), angles))
 
     def _orthonormalise(
-        self, raw: NDArray[np.float64], combine: NDArray[np.float64], phase: NDArray[np.float64]
+        self, raw: NDArray[np.float64], combine: NDArray[np.float64] | None, phase: NDArray[np.float64]
     ) -> None:
         """The transform from raw functions at even leads to orthonormal rows, and what rounding does to these."""
-        triangle = np.asarray(np.linalg.qr((combine @ raw).T, mode="r"))
+        triangle = np.asarray(np.linalg.qr((raw if combine is None else combine @ raw).T, mode="r"))
         scale = math.sqrt(raw.shape[1])
-        self._transform = (_inverse_transposed(triangle) @ combine) * scale
-        self._back = (triangle @ combine) / scale
+        self._transform, self._back = _inverse_transposed(triangle) * scale, triangle / scale
+        if combine is not None:
+            self._transform, self._back = self._transform @ combine, self._back @ combine
         self._slopes = [self._transform]
         self.size = int(self._transform.shape[0])
         spread = np.abs(self._transform) @ (np.abs(raw) * phase)

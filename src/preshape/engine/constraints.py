@@ -133,15 +133,15 @@ class ImpulsesBetween:
     high: float = math.inf
 
     def __post_init__(self) -> None:
-        if self.low > 0.0:
-            raise InputError(
-                f"impulses of at least {self.low:g} are not convex, since most places have none: give a lower limit of "
-                "0 or below, and limit their number instead."
-            )
         if not self.low < self.high or self.high <= 0.0:
             raise InputError(
                 f"impulses between {self.low:g} and {self.high:g} cannot sum to 1: give a lower limit below the upper "
                 "one, the upper one above 0."
+            )
+        if self.low > 0.0:
+            raise InputError(
+                f"impulses of at least {self.low:g} are not convex, since most places have none: give a lower limit of "
+                "0 or below, and limit their number instead."
             )
 
     def rows(self, leads: NDArray[np.float64]) -> Rows:

@@ -128,6 +128,10 @@ def _outcome(
             "prefer chooses among equally short shapers of zero vibration with impulses anywhere: leave it out, or "
             "limit the number of impulses."
         )
+    needed = max((one.order + 2 for one in zeros), default=1)
+    if limits and min(limits) < needed:  # fewer columns u^k exp(-s u), k = 0..order, are linearly independent
+        reason = f"{min(limits)} impulses are too few: zero vibration of order {needed - 2} takes at least {needed}."
+        return Outcome("infeasible", np.zeros(0), np.zeros(0), math.nan, reason)
     if grids:
         free = bool(signed or levels)
         if limits and not (free or zeros):
