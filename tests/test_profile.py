@@ -257,3 +257,24 @@ def test_a_ruckig_trajectory_becomes_its_exact_profile() -> None:
         shaper = design.zvd((2.0, 0.05))
         assert ModalPlant((2.0, 0.05)).motion(profile.shaped(shaper)).residual("output") < 1e-12
         assert profile.shaped(shaper).final_value == pytest.approx(profile.final_value, abs=1e-13)
+
+
+def test_ramps_short_against_the_whole_end_at_rest() -> None:
+    """Times are rounded by a part of the whole; what short ramps make of that is not a command that moves on."""
+    ruckig = pytest.importorskip("ruckig")
+    generator = np.random.default_rng(1)
+    for _ in range(400):
+        distance, speed, acceleration, jerk = 10.0 ** generator.uniform(-2.0, 2.0, 4)
+        asked = ruckig.InputParameter(1)
+        asked.target_position = [distance]
+        asked.max_velocity, asked.max_acceleration, asked.max_jerk = [speed], [acceleration], [jerk]
+        trajectory = ruckig.Trajectory(1)
+        ruckig.Ruckig(1).calculate(asked, trajectory)
+        assert Profile.from_ruckig(trajectory).final_value == pytest.approx(distance, rel=1e-8)
+
+
+def test_a_command_that_moves_on_slowly_is_told_from_rounding() -> None:
+    slow = Profile.steps([0.0, 1.0], [1.0, -1.0 + 1e-9], order=1)
+    assert not slow.ends_at_rest
+    late = Profile([0.0, 1.0, 1000.0, 1001.0], [1.0, -1.0, -1.0, 1.0 + 1e-9], [3, 3, 3, 3])
+    assert not late.ends_at_rest

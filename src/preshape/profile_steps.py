@@ -38,10 +38,28 @@ def segments_of(
         change = stepped[:, order]
         change[1:] += grown
         taylor[:, order] = np.cumsum(change)
-    taylor = rested(taylor)
+    taylor = rested(taylor, _by_rounded_times(starts, stepped))
     starts.setflags(write=False)
     taylor.setflags(write=False)
     return starts, taylor
+
+
+def _by_rounded_times(starts: NDArray[np.float64], stepped: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What steps at rounded times leave of each derivative at the end, at most, shape (order,).
+
+    A step that is late by e takes e times itself from the next lower derivative, and that grows with the time left. A
+    ramp that is short against the whole ends at a time that is rounded by a large part of it.
+    """
+    left = np.zeros(stepped.shape[1])
+    if starts.size:
+        late, since = SAME_TIME * np.abs(starts).max(), starts[-1] - starts
+        sizes = np.abs(stepped)
+        for order in range(stepped.shape[1] - 1):
+            power = np.ones_like(since)
+            for k in range(order + 1, stepped.shape[1]):
+                left[order] += late * float(sizes[:, k] @ power)
+                power = power * since / (k - order)
+    return left
 
 
 def merged_steps(

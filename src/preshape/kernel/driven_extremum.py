@@ -56,7 +56,8 @@ class Extremum:
     time : float
         When [s]; the earliest found.
     bound : float
-        What it cannot exceed at any time; above `value` only for endless undamped vibration of several modes.
+        What it cannot exceed at any time; above `value` only for endless undamped vibration that
+        has another mode beside it, and comes ever nearer to its largest value without reaching it.
     """
 
     value: float

@@ -3,14 +3,30 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape.kernel.driven_extremum import PARTS, ROUNDING, Stretch, first_stretches, parts_of, split
+from preshape.errors import InputError
+from preshape.kernel.driven_extremum import (
+    BLOCK,
+    PARTS,
+    ROUNDING,
+    SAMPLES_PER_PERIOD,
+    Stretch,
+    first_stretches,
+    parts_of,
+    split,
+)
 from preshape.kernel.driven_output import DrivenOutput
 
 __all__ = ["last_outside"]
+
+MOST_BLOCKS = 256
+"""A ring-down longer than this many blocks is followed backwards for as many: where one mode rings longest, the last
+moment outside is in the first block."""
 
 TOUCHING = 1e-12
 """An output that leaves the band by less than this fraction of it only touches the edge."""
@@ -36,15 +52,15 @@ def last_outside(output: DrivenOutput, half_width: float) -> float:
     steady = phasors.poles.real == 0.0
     if amplitudes[steady].sum() > limit:
         return math.inf
-    for stretch in (_tail(output, amplitudes, limit), *reversed(list(first_stretches(phasors)))):
+    for stretch in chain(_tail(output, amplitudes, limit), reversed(list(first_stretches(phasors)))):
         last = _search(output, float(rest[0]), limit, stretch)
         if last is not None:
             return last
     return float(phasors.starts[0]) if abs(rest[0]) > limit else 0.0
 
 
-def _tail(output: DrivenOutput, amplitudes: NDArray[np.float64], limit: float) -> Stretch:
-    """The stretch after the last step that ends where the free vibration cannot leave the band any more."""
+def _tail(output: DrivenOutput, amplitudes: NDArray[np.float64], limit: float) -> Iterator[Stretch]:
+    """What comes after the last step, the latest first, from when the free vibration cannot leave the band any more."""
     poles = output.phasors.poles
     end = 0.0
     if amplitudes.sum() > limit:
@@ -53,7 +69,18 @@ def _tail(output: DrivenOutput, amplitudes: NDArray[np.float64], limit: float) -
         # When each decaying amplitude is below its equal share of what is spare, so is their sum.
         share = spare / np.count_nonzero(decaying)
         end = float(np.max(np.log(np.maximum(amplitudes[decaying] / share, 1.0)) / -poles.real[decaying], initial=0.0))
-    return split(output.phasors.starts.size - 1, 0.0, end, int(parts_of(output.phasors, np.array([end]))[0]))
+    last = output.phasors.starts.size - 1
+    intervals = end * float(np.abs(poles).max(initial=0.0)) * SAMPLES_PER_PERIOD / (2.0 * np.pi)
+    blocks = max(1, math.ceil(min(intervals / BLOCK, float(MOST_BLOCKS + 1))))
+    length = end / blocks if blocks <= MOST_BLOCKS else BLOCK * end / intervals
+    for k in range(min(blocks, MOST_BLOCKS)):
+        since = max(end - (k + 1) * length, 0.0)
+        yield split(last, since, length, int(parts_of(output.phasors, np.array([length]))[0]))
+    if blocks > MOST_BLOCKS:
+        raise InputError(
+            f"the vibration takes {end:.3g} s to die out, too many periods to follow: give a wider band, or a damping "
+            "ratio of 0 for what rings for ever."
+        )
 
 
 def _search(output: DrivenOutput, rest: float, limit: float, stretch: Stretch) -> float | None:

@@ -14,13 +14,16 @@ AT_REST = 1e-12
 that ends at rest. It must not become a drift to infinity."""
 
 
-def rested(taylor: NDArray[np.float64]) -> NDArray[np.float64]:
-    """`taylor`, shape (segment, order), with the slopes after the last step at 0 where they are rounding."""
+def rested(taylor: NDArray[np.float64], rounding: NDArray[np.float64] | float = 0.0) -> NDArray[np.float64]:
+    """`taylor`, shape (segment, order), with the slopes after the last step at 0 where they are rounding.
+
+    That is below a part of their largest, or below what the caller knows: `rounding`, shape (order,).
+    """
     if taylor.size == 0:
         return taylor
     result = taylor.copy()
     last = result[-1]
-    still = np.abs(last) <= AT_REST * np.abs(taylor).max(axis=0)
+    still = np.abs(last) <= np.maximum(AT_REST * np.abs(taylor).max(axis=0), rounding)
     still[0] = False
     last[still] = 0.0
     return result

@@ -135,8 +135,8 @@ class Motion:
         -------
         Extremum
             `value` [unit of the output], `time` [s], and `bound`, which nothing exceeds at any time. The bound is above
-            the value only when several modes ring for ever: such a motion never repeats, and the sum of the amplitudes
-            is approached, not reached. Both are infinite when the output grows for ever.
+            the value only when a mode rings for ever and others beside it: such a motion never repeats, and its largest
+            value is approached, not reached. Both are infinite when the output grows for ever.
         """
         return extremum(self._driven(output))
 
