@@ -10,7 +10,7 @@ import math
 
 from preshape.checks import nonzero, positive
 from preshape.command.command import Command
-from preshape.command.symmetric import Segment, symmetric_move
+from preshape.command.symmetric import Segment, asked_duration, symmetric_move
 from preshape.mode import ModesLike, one_mode
 
 __all__ = ["period_matched"]
@@ -25,6 +25,7 @@ def period_matched(
     *,
     maximum_speed: float,
     maximum_acceleration: float,
+    duration: float | None = None,
     dt: float,
     rest: float = 0.0,
     quantity: str = "position [m]",
@@ -39,13 +40,16 @@ def period_matched(
         What it leaves at rest; with damping z about pi z of the vibration of bang-bang remains.
     maximum_speed, maximum_acceleration : float
         Limits [m/s, m/s^2].
+    duration : float, optional
+        [s]; the shortest within the limits unless given. A longer one lengthens the cruise: the ramps stay
+        whole periods.
     dt, rest, quantity
         As for :func:`preshape.command.trapezoid`.
 
     Raises
     ------
     InputError
-        If a value is out of range or not finite.
+        If a value is out of range or not finite, or the duration breaks a limit.
 
     Examples
     --------
@@ -65,6 +69,8 @@ def period_matched(
         held = size / reached - count * period
         if count * period + size / reached < best * (1.0 - ROUNDING):
             best, ramp, cruise = count * period + size / reached, count * period, max(0.0, held)
+    if duration is not None:
+        cruise = asked_duration(duration, 2.0 * ramp + cruise) - 2.0 * ramp
     top = size / (ramp + cruise)
     half = [Segment(ramp, top / ramp), Segment(0.5 * cruise, 0.0)]
     return symmetric_move(distance, half, dt=dt, rest=rest, quantity=quantity)

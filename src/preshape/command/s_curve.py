@@ -6,7 +6,7 @@ import math
 
 from preshape.checks import nonzero, positive
 from preshape.command.command import Command
-from preshape.command.symmetric import Segment, symmetric_move
+from preshape.command.symmetric import Segment, slowed, symmetric_move
 
 __all__ = ["s_curve"]
 
@@ -17,6 +17,7 @@ def s_curve(
     maximum_speed: float,
     maximum_acceleration: float,
     maximum_jerk: float,
+    duration: float | None = None,
     dt: float,
     rest: float = 0.0,
     quantity: str = "position [m]",
@@ -37,6 +38,9 @@ def s_curve(
         Acceleration limit [m/s^2], above zero.
     maximum_jerk : float
         Jerk limit [m/s^3], above zero. For none, take :func:`preshape.command.trapezoid`.
+    duration : float, optional
+        [s]; the shortest within the limits unless given. A longer one slows the same move in time: less speed,
+        acceleration and jerk, in the same proportions.
     dt : float
         Sample interval [s].
     rest : float
@@ -53,7 +57,8 @@ def s_curve(
     Raises
     ------
     InputError
-        If a value is out of range or not finite, or `dt` asks for more samples than a command may have.
+        If a value is out of range or not finite, the duration breaks a limit, or `dt` asks for more
+        samples than a command may have.
 
     Examples
     --------
@@ -84,7 +89,7 @@ def s_curve(
         Segment(rise, top, -jerk),
         Segment(0.5 * cruise, 0.0),
     ]
-    return symmetric_move(distance, half, dt=dt, rest=rest, quantity=quantity)
+    return symmetric_move(distance, slowed(half, duration), dt=dt, rest=rest, quantity=quantity)
 
 
 def _ramp(speed: float, acceleration: float, jerk: float) -> tuple[float, float]:

@@ -7,7 +7,7 @@ end position exact, keeps the last samples from overshooting by rounding, and ha
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -16,14 +16,21 @@ from numpy.typing import NDArray
 from preshape.checks import not_negative, positive
 from preshape.command.checks import sample_count
 from preshape.command.command import Command
+from preshape.errors import InputError
 from preshape.profile import Profile
 
-__all__ = ["Segment", "symmetric_move"]
+__all__ = ["SAME_DURATION", "Segment", "asked_duration", "slowed", "symmetric_move"]
 
 Number = TypeVar("Number", float, NDArray[np.float64])
 
+SAME_DURATION = 1e-12
+"""A duration asked for that is shorter than the shortest move by this fraction only is the shortest: rounding."""
+
 KNOT_SLACK = 1e-12
 """A sample this near a switching time, relative to the move's duration, is on it (and takes the value after it)."""
+
+SAME_TIME = 16.0 * np.finfo(float).eps
+"""Times of a profile this near, relative to the move's duration, may be taken for one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +40,26 @@ class Segment:
     duration: float
     acceleration: float
     jerk: float = 0.0
+
+
+def asked_duration(duration: float, shortest: float) -> float:
+    """The duration asked for [s], if the limits allow it; a move that is only shorter by rounding is the shortest."""
+    asked = positive("duration", duration, "s")
+    if asked < shortest * (1.0 - SAME_DURATION):
+        raise InputError(f"a duration of {asked:g} s breaks a limit: this move takes at least {shortest:.6g} s.")
+    return max(asked, shortest)
+
+
+def slowed(half: Sequence[Segment], duration: float | None) -> list[Segment]:
+    """The same move slowed in time until the whole of it takes `duration` [s]; as it is when that is None.
+
+    Slowed by c, its speed falls by c, its acceleration by c^2 and its jerk by c^3, so it keeps whatever limit it kept.
+    """
+    if duration is None:
+        return list(half)
+    shortest = 2.0 * sum(segment.duration for segment in half)
+    c = asked_duration(duration, shortest) / shortest
+    return [replace(s, duration=c * s.duration, acceleration=s.acceleration / c**2, jerk=s.jerk / c**3) for s in half]
 
 
 def symmetric_move(distance: float, half: Sequence[Segment], *, dt: float, rest: float, quantity: str) -> Command:
@@ -85,8 +112,10 @@ def symmetric_move(distance: float, half: Sequence[Segment], *, dt: float, rest:
 def _profile(sign: float, half: Sequence[Segment], knots: NDArray[np.float64]) -> Profile:
     """The whole move by its steps of acceleration and jerk; the second half is -a(T - t) and j(T - t) of the first."""
     duration = 2.0 * float(knots[-1])
+    # A stretch shorter than the rounding of times is left out: what it changes is then a step of the acceleration.
+    least = SAME_TIME * duration
     lasting = [
-        (float(start), segment) for start, segment in zip(knots[:-1], half, strict=True) if segment.duration > 0.0
+        (float(start), segment) for start, segment in zip(knots[:-1], half, strict=True) if segment.duration > least
     ]
     stretches = [(start, segment.acceleration, segment.jerk) for start, segment in lasting]
     for start, segment in reversed(lasting):

@@ -6,7 +6,7 @@ import math
 
 from preshape.checks import nonzero, positive
 from preshape.command.command import Command
-from preshape.command.symmetric import Segment, symmetric_move
+from preshape.command.symmetric import Segment, slowed, symmetric_move
 
 __all__ = ["trapezoid"]
 
@@ -16,6 +16,7 @@ def trapezoid(
     *,
     maximum_speed: float,
     maximum_acceleration: float,
+    duration: float | None = None,
     dt: float,
     rest: float = 0.0,
     quantity: str = "position [m]",
@@ -34,6 +35,9 @@ def trapezoid(
         Speed limit [m/s], above zero.
     maximum_acceleration : float
         Acceleration limit [m/s^2], above zero.
+    duration : float, optional
+        [s]; the shortest within the limits unless given. A longer one slows the same move in time: less speed,
+        acceleration and jerk, in the same proportions.
     dt : float
         Sample interval [s].
     rest : float
@@ -50,7 +54,8 @@ def trapezoid(
     Raises
     ------
     InputError
-        If a value is out of range or not finite, or `dt` asks for more samples than a command may have.
+        If a value is out of range or not finite, the duration breaks a limit, or `dt` asks for more
+        samples than a command may have.
 
     Examples
     --------
@@ -66,4 +71,4 @@ def trapezoid(
     # The cruise is what is left: 0 for the triangle, where rounding could make the difference negative.
     cruise = max(0.0, size / speed - speed / acceleration)
     half = [Segment(ramp, acceleration), Segment(0.5 * cruise, 0.0)]
-    return symmetric_move(distance, half, dt=dt, rest=rest, quantity=quantity)
+    return symmetric_move(distance, slowed(half, duration), dt=dt, rest=rest, quantity=quantity)
