@@ -1,4 +1,4 @@
-"""The figures of the theory page, into docs/images; run by `make figures`."""
+"""The figures of the documentation, into docs/images; run by `make figures`."""
 
 from __future__ import annotations
 
@@ -10,12 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from preshape import Modes, design
+from preshape.command.rest_to_rest import deflection_limiting
 from preshape.engine.basis import Basis
 from preshape.engine.polynomial import Polynomial
 from preshape.engine.projection import project
 from preshape.files import write_atomically
+from preshape.plant import FloatingOscillator
+from preshape.report import comparison_figure, move_figure
 from preshape.report.figures import ACCENT, INK, MUTED, SECOND, SOFT, as_svg, new_figure, tidy
 from preshape.vibration import residual_vibration, tolerated_bands
+from preshape.workflow import compare
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -171,7 +175,24 @@ def insensitivity() -> Figure:
     return figure
 
 
-FIGURES = {"certificate": certificate, "growth": growth, "insensitivity": insensitivity}
+def swinging() -> Figure:
+    """The move of the tutorial: two masses and a spring, ten metres, 0.3 m of deflection."""
+    plant = FloatingOscillator(first_mass=1.0, second_mass=1.0, stiffness=1.0)
+    return move_figure(deflection_limiting(plant, 10.0, maximum_force=1.0, deflection_limit=0.3))
+
+
+def comparison() -> Figure:
+    """Every kind of command for one move of a mode of 1.2 Hz."""
+    return comparison_figure(compare((1.2, 0.01), 0.5, maximum_speed=1.0, maximum_acceleration=5.0))
+
+
+FIGURES = {
+    "certificate": certificate,
+    "comparison": comparison,
+    "growth": growth,
+    "insensitivity": insensitivity,
+    "swinging": swinging,
+}
 
 
 def main() -> None:

@@ -15,6 +15,8 @@ COMMANDS = {
     "design": "Design a shaper for known modes.",
     "analyze": "Show what a shaper does at its modes.",
     "shape": "Shape a command that lies in a CSV file.",
+    "compare": "Compare every kind of command for one move of a flexible machine.",
+    "move": "Move a flexible body from rest to rest, within a deflection.",
     "reproduce": "Recompute what the papers print, with verdicts and figures.",
 }
 """Each in a module of its own, imported when it is called: help stays fast."""

@@ -51,7 +51,9 @@ def sd_zv(modes: ModesLike, deflection_ratio: float, form: Form = "impulses", *,
         deflection of one of them; with `dt` the shortest for all of them together is found.
     deflection_ratio : float
         R [-]: peak deflection after a step of speed, relative to the unshaped peak; of one mode, after a step of
-        position too. Above 0, and up to 1/(1 + K), which zero vibration (ZV) has by itself.
+        position too. Above 0, and up to 1/(1 + K), which zero vibration (ZV) has by itself. Other commands may bend it
+        further: steady acceleration holds the static deflection whatever the shaper; for a known command take
+        :func:`deflection_limited`.
     form : {"impulses", "box"}
         ``"impulses"``: n + 1 of them, n the least whole number of at least 1/(R (1 + K)). ``"box"``: two impulses with
         a part of constant density between them, the shortest there is; for one mode.

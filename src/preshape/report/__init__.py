@@ -2,7 +2,17 @@
 
 from preshape.report.calibration import FREQUENCY_ERROR, Calibration, Candidate, MeasuredFile, SimulatedMove
 from preshape.report.calibration_figure import calibration_figure
-from preshape.report.figures import as_svg
+from preshape.report.comparison import Comparison, Contender, Kind, LeftOut
+from preshape.report.comparison_figure import comparison_figure
+from preshape.report.comparison_table import (
+    comparison_sentences,
+    comparison_table,
+    length_unit,
+    move_sentence,
+    table_sentence,
+)
+from preshape.report.figures import as_svg, figure_bytes, figure_format
+from preshape.report.move_figure import move_figure
 from preshape.report.page import calibration_page, klipper_sentence
 from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table
 
@@ -10,6 +20,10 @@ __all__ = [
     "FREQUENCY_ERROR",
     "Calibration",
     "Candidate",
+    "Comparison",
+    "Contender",
+    "Kind",
+    "LeftOut",
     "MeasuredFile",
     "SimulatedMove",
     "TextTable",
@@ -17,7 +31,16 @@ __all__ = [
     "calibration_figure",
     "calibration_page",
     "candidate_table",
+    "comparison_figure",
+    "comparison_sentences",
+    "comparison_table",
     "exclusion_sentence",
+    "figure_bytes",
+    "figure_format",
     "klipper_sentence",
+    "length_unit",
     "mode_table",
+    "move_sentence",
+    "table_sentence",
+    "move_figure",
 ]

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import io
+import os
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+from preshape.errors import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["ACCENT", "INK", "MUTED", "SECOND", "SOFT", "as_svg", "new_figure", "tidy"]
+__all__ = ["ACCENT", "INK", "MUTED", "SECOND", "SOFT", "as_svg", "figure_bytes", "figure_format", "new_figure", "tidy"]
+
+FORMATS = ("svg", "png", "pdf")
+
+DOTS_PER_INCH = 150
 
 INK = "#1a1a1a"
 ACCENT = "#0b5fa5"
@@ -48,3 +56,21 @@ def as_svg(figure: Figure) -> str:
         figure.savefig(buffer, format="svg", metadata={"Date": None})
     text = buffer.getvalue()
     return text[text.index("<svg") :]
+
+
+def figure_format(path: str | os.PathLike[str]) -> str:
+    """The kind of figure that a file name asks for, "svg", "png" or "pdf"; InputError for another."""
+    kind = Path(path).suffix.lower().removeprefix(".")
+    if kind not in FORMATS:
+        raise InputError(f"{path} names no kind of figure: end it in .svg, .png or .pdf.")
+    return kind
+
+
+def figure_bytes(figure: Figure, kind: str) -> bytes:
+    """The figure as a file of a kind that :func:`figure_format` names; the same bytes for the same figure."""
+    if kind == "svg":
+        return as_svg(figure).encode()
+    buffer = io.BytesIO()
+    metadata = {"CreationDate": None} if kind == "pdf" else {"Software": None}
+    figure.savefig(buffer, format=kind, dpi=DOTS_PER_INCH, metadata=metadata)
+    return buffer.getvalue()

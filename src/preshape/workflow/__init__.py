@@ -1,8 +1,10 @@
-"""The jobs people come for, composed of everything below: calibrate, analyze, shape a file."""
+"""The jobs people come for, composed of everything below: calibrate, analyze, compare, shape a file."""
 
 from preshape.workflow.analyze import Analysis, ModeAnalysis, analyze
 from preshape.workflow.calibrate import calibrate
+from preshape.workflow.compare import compare
 from preshape.workflow.save import SavedCalibration, save_calibration
+from preshape.workflow.save_move import save_force
 from preshape.workflow.shape_file import ShapedFile, shape_file
 
 __all__ = [
@@ -12,6 +14,8 @@ __all__ = [
     "ShapedFile",
     "analyze",
     "calibrate",
+    "compare",
     "save_calibration",
+    "save_force",
     "shape_file",
 ]

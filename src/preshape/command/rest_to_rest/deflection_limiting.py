@@ -104,7 +104,7 @@ def deflection_limiting(
         move.maximum_force,
         times,
         levels,
-        settings={"deflection_limit": limit, "fuel_lean": fuel_lean},
+        settings={"deflection_limits": (limit,), "fuel_lean": fuel_lean},
     )
 
 

@@ -95,10 +95,12 @@ class RestToRest:
         dt : float
             Sample interval [s].
         rest : float
-            How long at least the 0 after the move is kept in the samples [s].
+            How long at least the 0 after the move is kept in the samples [s]; the last sample is 0 in any case.
         """
         dt = positive("dt", dt, "s")
-        times = np.arange(sample_count(self.duration + not_negative("rest", rest, "s"), dt) + 1) * dt
+        # one sample more: held to the next, the last mean of the move must be followed by the 0
+        count = sample_count(self.duration + not_negative("rest", rest, "s"), dt) + 2
+        times = np.arange(count) * dt
         means = np.diff(self.force.integral()(times)) / dt
         values = np.append(0.0, np.clip(means, -self.maximum_force, self.maximum_force))
         return Command(dt=dt, values=values, quantity="force [N]", duration=self.duration)
