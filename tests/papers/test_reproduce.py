@@ -44,8 +44,8 @@ def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, 
     return int(stop.value.code or 0), captured.out, captured.err
 
 
-def test_the_list_holds_the_four_papers() -> None:
-    assert NAMES == ["hyde", "singer", "singh", "slides"]
+def test_the_list_holds_the_five_papers() -> None:
+    assert NAMES == ["hyde", "singer", "singh", "slides", "robertson"]
     assert papers_named() == list(PAPERS)
     assert [paper.name for paper in papers_named(["singh", "hyde", "singh"])] == ["hyde", "singh"]
 
@@ -72,10 +72,11 @@ def test_no_statement_is_made_twice(name: str, reproductions: dict[str, Reproduc
 @pytest.mark.parametrize(
     ("name", "expected"),
     [
-        ("hyde", [*(f"2.{i}" for i in range(1, 16)), *(f"3.{i}" for i in range(1, 20))]),
+        ("hyde", [f"{c}.{i}" for c, last in ((2, 15), (3, 19), (5, 6)) for i in range(1, last + 1)]),
         ("singer", [str(i) for i in range(1, 11)]),
         ("singh", [str(i) for i in range(1, 16)]),
         ("slides", [str(i) for i in range(1, 12)]),
+        ("robertson", ["2", *(str(i) for i in range(5, 19))]),
     ],
 )
 def test_every_figure_is_drawn_with_units_and_nothing_cut_off(
@@ -88,7 +89,7 @@ def test_every_figure_is_drawn_with_units_and_nothing_cut_off(
         assert ElementTree.fromstring(as_svg(drawing)).tag.endswith("svg")
         drawing.draw_without_rendering()
         lowest = [axes for axes in drawing.axes if axes.get_xlabel()]
-        assert lowest and all(re.search(r"\[(Hz|s|-|%)\]", axes.get_xlabel()) for axes in lowest), figure.number
+        assert lowest and all(re.search(r"\[(Hz|s|m|-|%)\]", axes.get_xlabel()) for axes in lowest), figure.number
         for axes in drawing.axes:
             assert axes.get_ylabel() or not axes.get_yticks().size
             assert axes.get_title(loc="left")

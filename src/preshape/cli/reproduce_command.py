@@ -24,8 +24,8 @@ DEFAULT_FOLDER = "\0"
 def command(context: click.Context, names: tuple[str, ...], out: str | None) -> None:
     """Recompute what the papers print: printed and computed value, verdict, and why where they differ.
 
-    PAPER is hyde, singer, singh or slides; all of them unless named. The exit code is 0 when every difference has its
-    explanation, 1 when one has not.
+    PAPER is hyde, singer, singh, slides or robertson; all of them unless named. The exit code is 0 when every
+    difference has its explanation, 1 when one has not.
 
     \b
     preshape reproduce hyde

@@ -17,7 +17,17 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["Curve", "curves_figure", "draw_impulses", "impulse_figure", "sampled", "staircase", "vibration_figure"]
+__all__ = [
+    "Curve",
+    "curves_figure",
+    "draw_impulses",
+    "impulse_figure",
+    "legend_below",
+    "level_line",
+    "sampled",
+    "staircase",
+    "vibration_figure",
+]
 
 Vector: TypeAlias = NDArray[np.float64]
 Place: TypeAlias = Literal["best", "upper right", "upper left", "upper center", "lower left", "lower right"]
@@ -108,10 +118,22 @@ def vibration_figure(
     ]
     figure = curves_figure(title, "actual natural frequency [Hz]", "residual vibration [%]", curves, legend=None)
     axes = figure.axes[0]
-    axes.axhline(TOLERATED, color=INK, linewidth=0.9, linestyle=(0, (1, 2)))
+    level_line(axes, TOLERATED, f"{TOLERATED:g} %")
+    axes.plot(
+        modes, [0.0] * len(modes), "v", color=INK, markersize=6, clip_on=False, zorder=5, label="designed for", ls=""
+    )
+    if len(shapers) > 1:
+        legend_below(figure)
+    axes.set_ylim(0.0, top)
+    return figure
+
+
+def level_line(axes: Axes, height: float, word: str) -> None:
+    """A dotted line across the axes, named at its right end."""
+    axes.axhline(height, color=INK, linewidth=0.9, linestyle=(0, (1, 2)))
     axes.annotate(
-        f"{TOLERATED:g} %",
-        (frequencies[-1], TOLERATED),
+        word,
+        (axes.get_xlim()[1], height),
         xytext=(3, 0),
         textcoords="offset points",
         va="center",
@@ -119,13 +141,12 @@ def vibration_figure(
         fontsize=8.5,
         color=INK,
     )
-    axes.plot(
-        modes, [0.0] * len(modes), "v", color=INK, markersize=6, clip_on=False, zorder=5, label="designed for", ls=""
-    )
-    if len(shapers) > 1:
-        figure.legend(fontsize=8.5, loc="outside lower center", ncols=len(shapers) + 1, frameon=False)
-    axes.set_ylim(0.0, top)
-    return figure
+
+
+def legend_below(figure: Figure) -> None:
+    """The legend under the axes, in one row: where curves fill them."""
+    entries = len(figure.axes[0].get_legend_handles_labels()[1])
+    figure.legend(fontsize=8.5, loc="outside lower center", ncols=entries, frameon=False)
 
 
 def impulse_figure(title: str, *trains: tuple[str, Shaper]) -> Figure:

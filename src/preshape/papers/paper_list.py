@@ -7,13 +7,14 @@ from collections.abc import Iterable
 from preshape.errors import InputError
 from preshape.papers.hyde import HYDE
 from preshape.papers.reproduction import Paper
+from preshape.papers.robertson import ROBERTSON
 from preshape.papers.singer import SINGER
 from preshape.papers.singh import SINGH
 from preshape.papers.slides import SLIDES
 
 __all__ = ["PAPERS", "papers_named"]
 
-PAPERS: tuple[Paper, ...] = (HYDE, SINGER, SINGH, SLIDES)
+PAPERS: tuple[Paper, ...] = (HYDE, SINGER, SINGH, SLIDES, ROBERTSON)
 
 
 def papers_named(names: Iterable[str] = ()) -> list[Paper]:
