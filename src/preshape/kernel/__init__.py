@@ -9,6 +9,7 @@ from preshape.kernel.driven_phasors import DrivenPhasors, driven_phasors, taylor
 from preshape.kernel.driven_settling import last_outside
 from preshape.kernel.driven_tail import free_phasors, rested, trend
 from preshape.kernel.exponential_sum import exponential_sum, exponential_sum_uniform
+from preshape.kernel.modal_scan import scanned_outputs, twice_summed
 from preshape.kernel.phi_functions import phi_functions
 from preshape.kernel.sparse_convolution import sparse_convolve
 
@@ -30,7 +31,9 @@ __all__ = [
     "orthonormal_series",
     "phi_functions",
     "rested",
+    "scanned_outputs",
     "sparse_convolve",
     "taylor_shifted",
     "trend",
+    "twice_summed",
 ]

@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
-from preshape.papers.hyde import chapter2, chapter2_figures, chapter3_figures, convolution, exact, lengths, mesh
+from preshape.papers.hyde import (
+    chapter2,
+    chapter2_figures,
+    chapter3_figures,
+    chapter5_linear,
+    chapter5_linear_figures,
+    convolution,
+    exact,
+    lengths,
+    mesh,
+)
 from preshape.papers.reproduction import Figure, Paper, Row
 
 __all__ = ["HYDE"]
@@ -10,17 +20,20 @@ __all__ = ["HYDE"]
 
 def _contents() -> tuple[list[Row], list[Figure]]:
     meshed = mesh.designs()
+    slewed = chapter5_linear.slewed()
     rows = [
         *chapter2.rows(),
         *convolution.rows(),
         *lengths.rows(),
         *mesh.rows(meshed),
         *exact.rows(meshed),
+        *chapter5_linear.rows(slewed),
     ]
     figures = [
         *chapter2_figures.figures(),
         *convolution.figures(),
         *chapter3_figures.figures(meshed),
+        *chapter5_linear_figures.figures(slewed),
     ]
     return rows, figures
 
@@ -28,6 +41,6 @@ def _contents() -> tuple[list[Row], list[Figure]]:
 HYDE = Paper(
     "hyde",
     "J. M. Hyde, Multiple Mode Vibration Suppression in Controlled Flexible Systems, MIT AI-TR 1295, 1991: "
-    "chapters 2 and 3",
+    "chapters 2, 3 and 5.2",
     _contents,
 )
