@@ -48,8 +48,10 @@ class Settling:
 def settling(shaper: Shaper, frequency: ArrayLike, damping: ArrayLike = 0.0, *, tolerance: float = 0.05) -> Settling:
     """Settling time of a mode after a shaped command, for the mode as it may really be.
 
-    An amplitude is at its tolerance when it is `tolerance` times what one unit impulse leaves at its own instant. So
+    An amplitude is at its tolerance when it is `tolerance` times what one unit impulse leaves at its own instant. So::
+
       time = t_N + max(0, ln(V / tolerance)) / (z w),    unshaped time = ln(1 / tolerance) / (z w),
+
     t_N the shaper's duration: before it the command itself still moves. It is the envelope that is meant; the time that
     a given output needs, by its own oscillation, is ``plant.motion(command).settling_time(output, within)``.
 
