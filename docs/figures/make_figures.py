@@ -15,11 +15,11 @@ from preshape.engine.basis import Basis
 from preshape.engine.polynomial import Polynomial
 from preshape.engine.projection import project
 from preshape.files import write_atomically
-from preshape.plant import FloatingOscillator
-from preshape.report import comparison_figure, move_figure
+from preshape.plant import FloatingOscillator, load_plant
+from preshape.report import comparison_figure, move_figure, simulation_figure
 from preshape.report.figures import ACCENT, INK, MUTED, SECOND, SOFT, as_svg, new_figure, tidy
 from preshape.vibration import residual_vibration, tolerated_bands
-from preshape.workflow import compare
+from preshape.workflow import compare, simulate_plant
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -186,11 +186,19 @@ def comparison() -> Figure:
     return comparison_figure(compare((1.2, 0.01), 0.5, maximum_speed=1.0, maximum_acceleration=5.0))
 
 
+def own_machine() -> Figure:
+    """The gantry of the tutorial, moved by 0.2 m, unshaped beside shaped."""
+    gantry = load_plant(HERE.parents[1] / "examples" / "data" / "machine.toml")
+    shaper = design.direct(gantry.modes(), order=0)
+    return simulation_figure(simulate_plant(gantry, np.minimum(np.arange(250) * 1e-3, 0.2), 1e-3, shaper))
+
+
 FIGURES = {
     "certificate": certificate,
     "comparison": comparison,
     "growth": growth,
     "insensitivity": insensitivity,
+    "own-machine": own_machine,
     "swinging": swinging,
 }
 

@@ -17,6 +17,7 @@ COMMANDS = {
     "shape": "Shape a command that lies in a CSV file.",
     "compare": "Compare every kind of command for one move of a flexible machine.",
     "move": "Move a flexible body from rest to rest, within a deflection.",
+    "simulate": "Simulate your machine under a command, unshaped beside shaped.",
     "reproduce": "Recompute what the papers print, with verdicts and figures.",
 }
 """Each in a module of its own, imported when it is called: help stays fast."""

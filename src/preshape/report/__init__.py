@@ -14,6 +14,8 @@ from preshape.report.comparison_table import (
 from preshape.report.figures import as_svg, figure_bytes, figure_format
 from preshape.report.move_figure import move_figure
 from preshape.report.page import calibration_page, klipper_sentence
+from preshape.report.shaped_simulation import OutputMotion, ShapedSimulation
+from preshape.report.simulation_figure import simulation_figure
 from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table
 
 __all__ = [
@@ -25,6 +27,8 @@ __all__ = [
     "Kind",
     "LeftOut",
     "MeasuredFile",
+    "OutputMotion",
+    "ShapedSimulation",
     "SimulatedMove",
     "TextTable",
     "as_svg",
@@ -41,6 +45,7 @@ __all__ = [
     "length_unit",
     "mode_table",
     "move_sentence",
+    "simulation_figure",
     "table_sentence",
     "move_figure",
 ]

@@ -3,9 +3,13 @@
 from preshape.workflow.analyze import Analysis, ModeAnalysis, analyze
 from preshape.workflow.calibrate import calibrate
 from preshape.workflow.compare import compare
+from preshape.workflow.identify_plant import identify_plant
+from preshape.workflow.read_command import read_command
 from preshape.workflow.save import SavedCalibration, save_calibration
 from preshape.workflow.save_move import save_force
+from preshape.workflow.save_simulation import save_partial, save_simulation
 from preshape.workflow.shape_file import ShapedFile, shape_file
+from preshape.workflow.simulate_plant import simulate_plant
 
 __all__ = [
     "Analysis",
@@ -15,7 +19,12 @@ __all__ = [
     "analyze",
     "calibrate",
     "compare",
+    "identify_plant",
+    "read_command",
     "save_calibration",
     "save_force",
+    "save_partial",
+    "save_simulation",
     "shape_file",
+    "simulate_plant",
 ]
