@@ -38,6 +38,7 @@ docs: $(DEV)
 
 figures: $(DEV)
 	$(BIN)/python docs/figures/make_figures.py
+	$(BIN)/python docs/figures/make_animation.py
 
 bench: $(DEV)
 	$(BIN)/python benchmarks/run_all.py
@@ -60,7 +61,7 @@ $(VENV)/requirements.stamp: $(VENV)/bin/python requirements/core.txt
 	$(PIP) install --require-hashes -r requirements/core.txt
 	@touch $@
 
-$(CORE): $(VENV)/requirements.stamp pyproject.toml
+$(CORE): $(VENV)/requirements.stamp pyproject.toml $(wildcard src/preshape/kernel/c/*)
 	$(PIP) install --quiet --no-deps --no-build-isolation --no-index --editable .
 	@touch $@
 

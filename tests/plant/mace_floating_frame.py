@@ -1,8 +1,9 @@
-"""MACE once more, by another method: a floating frame with a few assumed shapes of the bus, for tests.
+"""MACE once more, by another method: a floating frame with five assumed shapes of the bus, for tests.
 
-The frame rides on the middle node. In it the bus bends linearly, in its first free-free modes and two attachment shapes (the
-static answers to a force and a moment at the right end); it does not stretch, and its deflection takes no part in the
-length (no geometric stiffening). Masses are points and rigid bodies; everything else is exact in the rotations.
+The frame rides on the middle node. In it the bus bends linearly, in its first two free-free modes and three attachment
+shapes (the static answers to what loads it: force and moment at the right end, moment in the middle); it does not
+stretch, and its deflection takes no part in the length (no geometric stiffening). Masses are points and rigid bodies;
+everything else is exact in the rotations.
 """
 
 import numpy as np
@@ -20,8 +21,8 @@ ELEMENTS = 4
 class FloatingFrame:
     """Coordinates: frame x, y, angle; shapes of the bus; payload angle."""
 
-    def __init__(self, structure: MaceStructure, gains: MaceGains | None, damping: float, modes: int = 2) -> None:
-        self.s, self.gains, self.size = structure, gains, modes + 6
+    def __init__(self, structure: MaceStructure, gains: MaceGains | None, damping: float) -> None:
+        self.s, self.gains, self.size = structure, gains, 9
         nodes = 4 * ELEMENTS + 1
         self.places = np.linspace(-0.5 * LENGTH, 0.5 * LENGTH, nodes)
         bending = [3 * k + i for k in range(nodes) for i in (1, 2)]
@@ -30,12 +31,12 @@ class FloatingFrame:
         mass = model.mass[np.ix_(bending, bending)]
         _, free = eigh(stiffness, mass)
         # Attachment: the load at the end balanced by the inertia of rigid motion, so that the free bus can carry it.
-        loads = np.zeros((len(bending), 2))
-        loads[-2, 0] = loads[-1, 1] = 1.0
+        middle = 4 * ELEMENTS
+        loads = np.zeros((len(bending), 3))
+        loads[-2, 0] = loads[-1, 1] = loads[middle + 1, 2] = 1.0
         rigid = free[:, :2]
         static = np.linalg.lstsq(stiffness, loads - mass @ rigid @ (rigid.T @ loads), rcond=None)[0]
-        shapes = np.column_stack([free[:, 2 : 2 + modes], static / np.abs(static).max(axis=0)])
-        middle = 4 * ELEMENTS
+        shapes = np.column_stack([free[:, 2:4], static / np.abs(static).max(axis=0)])
         unit = np.zeros((len(bending), 2))
         unit[0::2, 0], unit[0::2, 1], unit[1::2, 1] = 1.0, self.places, 1.0
         shapes = shapes - unit @ shapes[[middle, middle + 1]]
@@ -84,7 +85,7 @@ class FloatingFrame:
         return np.linalg.solve(mass, force)
 
     def slew(self, angle: float, command: object, times: NDArray) -> NDArray:
-        """Coordinates, shape (coordinate, time), from rest: `command(t)` is the gimbal's torque, or with gains its angle."""
+        """Coordinates, shape (coordinate, time), from rest under a torque of the gimbal, or with gains an angle."""
         gains = self.gains
 
         def rates(t: float, state: NDArray) -> NDArray:

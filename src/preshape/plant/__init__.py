@@ -29,6 +29,7 @@ from preshape.plant.positioned_mass import PositionedMass
 from preshape.plant.protocol import SimulatedPlant, simulated
 from preshape.plant.reduction import StructureModes
 from preshape.plant.response import Response
+from preshape.plant.shuttle_arm import ShuttleArm
 from preshape.plant.simulation import Simulation
 from preshape.plant.simulator import SampledPlant, SimulatorPlant
 from preshape.plant.state_space import LinearPlant
@@ -53,6 +54,7 @@ __all__ = [
     "PositionedMass",
     "Response",
     "SampledPlant",
+    "ShuttleArm",
     "SimulatedPlant",
     "Simulation",
     "SimulatorPlant",

@@ -19,6 +19,9 @@ from preshape.profile import Profile
 
 __all__ = ["RestToRest", "result_of"]
 
+SHOWN = 60
+"""More switches than this are not shown in full."""
+
 
 @dataclass(frozen=True, eq=False)
 class RestToRest:
@@ -109,7 +112,10 @@ class RestToRest:
         gap = "" if self.gap is None else f", at most {100.0 * self.gap:.2g} % too long"
         lines = [f"{self.method}: {self.distance:g} m in {self.duration:.6g} s, {self.status}{gap}", ""]
         lines += ["  from [s]      force [N]"]
-        lines += [f"  {t:<12.9g}  {u:+.9g}" for t, u in zip(self.switch_times, [*self.levels, 0.0], strict=True)]
+        rows = [f"  {t:<12.9g}  {u:+.9g}" for t, u in zip(self.switch_times, [*self.levels, 0.0], strict=True)]
+        if len(rows) > SHOWN:  # a staircase, which nobody reads
+            rows = [*rows[: SHOWN // 2], f"  ... {len(rows) - SHOWN} more ...", *rows[-SHOWN // 2 :]]
+        lines += rows
         peaks = ", ".join(f"{peak:.6g}" for peak in self.peak_deflections)
         return "\n".join([*lines, "", f"  deflection at most {peaks} m"])
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from preshape.band import BandsLike, bands_of
 from preshape.checks import nonzero, positive, tolerance_of
+from preshape.command.rest_to_rest.first_arcs import first_arcs
 from preshape.command.rest_to_rest.rest_to_rest import RestToRest, result_of
 from preshape.command.rest_to_rest.shortest import PROVED, Found, Problem, shortest_move
 from preshape.command.rest_to_rest.undamped_move import body_of
@@ -18,6 +19,14 @@ from preshape.errors import InputError
 from preshape.plant import FlexibleBody, FloatingOscillator
 
 __all__ = ["time_optimal"]
+
+
+SHORTEST = 1e-4
+"""Half the time of the rigid body, as an angle of the slowest mode [rad]. In shorter moves all that the modes do is
+hidden in the rounding of the times."""
+
+LEAST_LIMIT = 1e-6
+"""Limits below this part of the static deflection are a matter of the times' last digits."""
 
 
 def time_optimal(
@@ -86,20 +95,27 @@ def time_optimal(
     weights = _weights(outputs, len(body.modes))
     limits = _limits(deflection_limits, weights.shape[0])
     limited = np.isfinite(limits)
-    edges = () if bands is None else edges_of(bands_of(bands), tolerance_of(tolerance))
+    allowed = tolerance_of(tolerance)
+    edges = () if bands is None else edges_of(bands_of(bands), allowed)
     problem = Problem(
         target=abs(distance) * body.mass / force,
         rates=-np.conj([mode.pole for mode in body.modes]),
         rows=(weights * body.static_deflections(force) / limits[:, None])[limited],
         edges=edges,
     )
-    found = shortest_move(problem)
+    _check_sizes(problem, distance, limits[limited])
+    only = float(limits[0]) if limits.size == 1 and outputs is None and limited[0] else math.inf
+    first = first_arcs(problem, body, distance, force, only) if only < math.inf else None
+    found = shortest_move(problem, first)
     if found is None:
-        raise RuntimeError("the solvers found no command for this move, though there is one: please report it.")
+        raise RuntimeError(
+            "the solvers found no command for this move, though there is one: please report it; ask for looser limits."
+        )
     if on_off:
         _check_on_off(found, problem, force, limits[limited])
     settings = {
         "deflection_limits": tuple(float(limit) for limit in limits),
+        "outputs": weights.tolist(),
         "bands": () if bands is None else bands_of(bands),
         "tolerance": None if bands is None else tolerance,
         "on_off": on_off,
@@ -135,11 +151,31 @@ def _weights(outputs: ArrayLike | None, modes: int) -> NDArray[np.float64]:
 
 def _limits(given: float | Sequence[float | None] | None, outputs: int) -> NDArray[np.float64]:
     """One limit an output [m], infinite where there is none."""
-    several = list(given) if isinstance(given, Sequence | np.ndarray) else [given] * outputs
+    several = [given] * outputs if given is None or np.isscalar(given) or not np.iterable(given) else list(given)
     if len(several) != outputs:
-        raise InputError(f"{len(several)} deflection limits for {outputs} outputs: give one for each, None for none.")
+        raise InputError(
+            f"deflection_limits has {len(several)} values where {outputs} belong: give one for each output, None for "
+            "none."
+        )
     limits = [math.inf if limit is None or limit == math.inf else limit for limit in several]
     return np.array([limit if limit == math.inf else positive("deflection limit", limit, "m") for limit in limits])
+
+
+def _check_sizes(problem: Problem, distance: float, limits: NDArray[np.float64]) -> None:
+    """InputError if sixteen digits are too few for the move."""
+    slowest = float(np.abs(problem.rates).min())
+    if problem.unit * slowest < SHORTEST:
+        raise InputError(
+            f"a move of {distance:g} m takes a rigid body {2.0 * problem.unit:.3g} s, too small a part of the slowest "
+            f"mode's period of {2.0 * math.pi / slowest:.3g} s to compute with: move farther or with less force, or "
+            f"use bang_bang, which leaves {(problem.unit * slowest) ** 2:.1g} of what one step of the force leaves."
+        )
+    for limit, sizes in zip(limits, np.abs(problem.rows).sum(axis=1), strict=True):
+        if sizes > 1.0 / LEAST_LIMIT:
+            raise InputError(
+                f"a deflection limit of {limit:g} m is {1.0 / sizes:.1g} of the static deflection: too little to "
+                f"compute with; give {1.1 * LEAST_LIMIT * sizes * limit:.2g} m or more, or less force."
+            )
 
 
 def _check_on_off(found: Found, problem: Problem, force: float, limits: NDArray[np.float64]) -> None:
@@ -151,11 +187,12 @@ def _check_on_off(found: Found, problem: Problem, force: float, limits: NDArray[
     if held and held[0].row is not None:
         static = limits[held[0].row] / abs(held[0].level)
         raise InputError(
-            f"a deflection limit of {limits[held[0].row]:g} m is held with {abs(held[0].level) * force:.6g} N, and an "
-            f"on-off actuator gives {force:g} N or nothing: only a proportional actuator can; leave on_off out, or "
-            f"limit the deflection to the static {static:.6g} m or more."
+            f"the shortest command holds the deflection limit of {limits[held[0].row]:g} m with "
+            f"{abs(held[0].level) * force:.6g} N, and an on-off actuator gives {force:g} N or nothing: only a "
+            "proportional actuator can; leave on_off out, or limit the deflection to the static "
+            f"{static:.6g} m or more."
         )
     raise InputError(
-        "the limits need levels between nothing and the maximum force, which an on-off actuator cannot give: leave "
-        "on_off out, or raise the deflection limits."
+        "the shortest command that was found within these limits needs levels between nothing and the maximum force, "
+        "which an on-off actuator cannot give: leave on_off out, or allow more deflection or vibration."
     )

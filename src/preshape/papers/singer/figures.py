@@ -1,4 +1,4 @@
-"""Singer & Seering, figures 1 to 10; 11 is a block diagram, 12 needs the Draper simulator."""
+"""Singer & Seering, figures 1 to 10; 11 is a block diagram, 12 stands in shuttle_arm_figures."""
 
 from __future__ import annotations
 

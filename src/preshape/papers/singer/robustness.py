@@ -1,4 +1,4 @@
-"""Singer & Seering, sections 2.2 to 2.4 and 2.6: what the sequences tolerate, several modes, shaped commands."""
+"""Singer & Seering, sections 2.2 to 2.4: what the sequences tolerate, several modes, shaped commands."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ABOUT = 0.15
 
 def rows() -> list[Row]:
     """In the order of the memo."""
-    return [*_bands(), *_damping(), *_higher_modes(), *_shaping(), _shuttle()]
+    return [*_bands(), *_damping(), *_higher_modes(), *_shaping()]
 
 
 def _bands() -> list[Row]:
@@ -190,22 +190,3 @@ def _shaping() -> list[Row]:
         ),
         number("2.4, fig. 10", "time penalty: the length of the sequence (three impulses, 1 Hz)", "1.00 s", delay, "s"),
     ]
-
-
-def _shuttle() -> Row:
-    shaper = design.zvd((1.0, 0.0))
-    band = insensitivity(shaper, (1.0, 0.0), 1.0 / 25.0)
-    error = 100.0 * (band.high - 1.0)
-    left = float(ModalPlant((1.0, 0.0)).impulse_residual(shaper.times, shaper.amplitudes)[0])
-    return claim(
-        "2.6, fig. 12",
-        "Shuttle arm simulator, 4 s pulse, three impulses: residual vibration divided by",
-        "25",
-        f"{shown(left)} left of a linear mode",
-        abs(left - 1.0 / 25.0) < 0.001,
-        because=Because(
-            "The Draper simulator is not public. A linear mode that is known exactly keeps nothing; a factor of 25 is "
-            f"what three impulses leave when the frequency is {error:.0f} % off, which its nonlinearities may well do.",
-            left < ROUNDING and abs(error - 200.0 / math.pi * math.asin(0.2)) < 1e-6,
-        ),
-    )

@@ -35,6 +35,9 @@ NODES = 12
 
 INTERVALS_PER_PERIOD = 16
 
+ONE_SIGN = 1e-15
+"""A sum that falls short of that of the magnitudes by this part has terms of both signs."""
+
 Rows = NDArray[np.float64]
 
 
@@ -42,7 +45,7 @@ def from_structure(
     problem: Problem,
     structure: Structure,
     motion: Motion,
-    found: Farthest,
+    found: Farthest | None,
     tolerances: Sequence[ActiveTolerance] = (),
 ) -> Witness:
     """The p that is zero where a structure switches and holds; if there are several, the one nearest to the grid's.
@@ -55,8 +58,8 @@ def from_structure(
         Arcs with their exact times.
     motion : Motion
         Under them.
-    found : Farthest
-        The solution on a grid that they come from.
+    found : Farthest or None
+        The solution on a grid that they come from, if any.
     tolerances : sequence of ActiveTolerance
         Where the vibration is as large as allowed.
     """
@@ -82,13 +85,13 @@ class _Backwards:
             left = motion.left(one.rate)
             self.phasors[modes + k, self.first_wave + k] = np.conj(left) / abs(left) * one.rate
 
-    def witness(self, found: Farthest) -> Witness:
+    def witness(self, found: Farthest | None) -> Witness:
         """p and its price."""
         structure, times = self.structure, self.structure.times
         events = np.unique(np.concatenate([times, [touch.time for touch in structure.touches]]))
         ends, kept, zero = [], [], []
         equations: list[Rows] = []
-        exits: list[Rows] = []
+        exits: list[tuple[float, int, Rows, Rows]] = []
         held: list[tuple[float, float, int, Rows]] = []
         for early, late in zip(events[-2::-1], events[:0:-1], strict=True):
             k = int(np.searchsorted(times, early, side="right")) - 1
@@ -97,7 +100,7 @@ class _Backwards:
             if late == times[k + 1] and late != structure.end and structure.arcs[k + 1].row is None:
                 equations.append(self._rest(late))
             if mode is not None and late == times[k + 1]:
-                exits.append(self._exit_mass(arc, mode, late))
+                exits.append((late, mode, self._exit_mass(arc, mode, late), self._rest(late)))
             if mode is not None:
                 held.append((early, late, mode, self.phasors.copy()))
             ends.append(early)
@@ -108,19 +111,24 @@ class _Backwards:
                 self._enter(arc, mode, early)
             self._touch(early)
         unknown = self._solved(equations, self._guess(found))
-        masses = np.zeros(len(ends))
-        masses[0] = float(np.abs(unknown[self.first_mass :]).sum())
-        masses[0] += sum(abs(float(row @ unknown)) for row in exits)
-        masses[0] += sum(self._density(*one, unknown) for one in held)
+        masses, price = np.zeros(len(ends)), 0.0
+        for (time, _, _), mass in zip(structure.contacts, unknown[self.first_mass :], strict=True):
+            masses[_piece_from(events, time)] += abs(float(mass))
+        for time, mode, mass, left in exits:
+            masses[_piece_from(events, time)] += abs(float(mass @ unknown))
+            price += abs(float(left @ unknown)) * self._jump_price(mode)
+        for early, late, mode, phasors in held:
+            masses[_piece_from(events, early)] += self._density(early, late, mode, phasors, unknown)
         waves = np.abs(unknown[self.first_wave : self.first_mass])
+        price += float(waves @ np.array([one.tolerance for one in self.tolerances]))
         return Witness(
-            np.array([*ends[::-1], structure.end]),
-            np.array([rows @ unknown for rows in kept[::-1]]),
-            self.rates,
-            float(unknown[1]),
-            np.array(zero[::-1]),
-            masses,
-            float(waves @ np.array([one.tolerance for one in self.tolerances])),
+            times=events,
+            phasors=np.array([rows @ unknown for rows in kept[::-1]]),
+            rates=self.rates,
+            constant=float(unknown[1]),
+            zero=np.array(zero[::-1]),
+            masses=masses,
+            price=price,
         )
 
     def _rest(self, time: float, but: int | None = None, derivative: int = 0) -> Rows:
@@ -139,6 +147,19 @@ class _Backwards:
         outside = np.real(self.phasors[mode] * self.rates[mode])
         inside = -self._rest(time, mode, 1)
         return np.asarray((inside - outside) / (abs(self.rates[mode]) ** 2 * self._weight(arc, mode)))
+
+    def _jump_price(self, mode: int) -> float:
+        """How much p is worth for each unit by which e_j jumps where a hold of its mode ends [s].
+
+        It should not jump: p = 0 is one of the equations there. What rounding leaves, or a structure that cannot meet
+        all of them, counts with the largest that the mode's deflection and speed can be. A mode that is kept within A,
+        and must stop before it gets farther than 2 A, is never faster than s with s^2 = 8 A z w s + 4 A (1 + A) w^2.
+        """
+        rate = self.problem.rates[mode]
+        omega, most = float(abs(rate)), 1.0 / float(np.abs(self.problem.rows[:, mode]).max())
+        z = float(rate.real) / omega
+        fastest = omega * (4.0 * most * z + math.sqrt(16.0 * (most * z) ** 2 + 4.0 * most * (1.0 + most)))
+        return fastest / omega**2 + 2.0 * z * most / omega
 
     def _enter(self, arc: Arc, mode: int, time: float) -> None:
         """Before a hold e_j is what it was inside, and its slope that of inside plus the mass."""
@@ -164,12 +185,15 @@ class _Backwards:
         )
         return self.first_mass + which
 
-    def _guess(self, found: Farthest) -> Rows:
+    def _guess(self, found: Farthest | None) -> Rows:
         """What the multipliers on the grid say of the unknowns."""
         guess = np.zeros(self.size)
+        guess[0] = 1.0
+        if found is None:
+            return guess
         modes = self.problem.rates.size
         final = np.conj(found.waves[:modes]) * self.problem.rates
-        guess[0], guess[1] = 1.0, found.velocity
+        guess[1] = found.velocity
         guess[2 : self.first_wave : 2], guess[3 : self.first_wave : 2] = final.real, final.imag
         for k, one in enumerate(self.tolerances):
             near = np.abs(found.points - one.rate) < SAME_PEAK / found.times[-1]
@@ -200,4 +224,14 @@ class _Backwards:
         rest, slope = rest + self.structure.end - t - unknown[1], slope - 1.0
         density = (bend - 2.0 * rate.real * slope) / abs(rate) ** 2 + rest
         arc = self.structure.arcs[int(np.searchsorted(self.structure.times, early, side="right")) - 1]
-        return float((np.abs(density) * half * weights).sum() / abs(self._weight(arc, mode)))
+        totals = (np.abs(density) * half * weights).sum(axis=1)
+        # where it changes its sign no quadrature is exact, but that of its square is, and by Schwarz that is enough
+        mixed = np.abs(density.sum(axis=1)) < np.abs(density).sum(axis=1) * (1.0 - ONE_SIGN)
+        squares = (density**2 * half * weights).sum(axis=1)
+        totals[mixed] = np.sqrt(2.0 * half[mixed, 0] * squares[mixed])
+        return float(totals.sum() / abs(self._weight(arc, mode)))
+
+
+def _piece_from(events: NDArray[np.float64], time: float) -> int:
+    """The piece that begins at a time; the last one for the end."""
+    return min(int(np.searchsorted(events, time)), events.size - 2)

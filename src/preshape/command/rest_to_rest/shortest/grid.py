@@ -11,15 +11,19 @@ from numpy.typing import NDArray
 from preshape.command.rest_to_rest.shortest.polish import ActiveTolerance
 from preshape.command.rest_to_rest.shortest.problem import Problem
 from preshape.command.rest_to_rest.shortest.programme import Farthest, farthest
-from preshape.engine.edges import vibration_peaks
+from preshape.engine.edges import Edge, vibration_peaks
 
 __all__ = ["Grid"]
 
-PER_PERIOD = 24
-"""Intervals in a period of the highest frequency to begin with."""
+PER_PERIOD, FEWEST_PER_PERIOD = 24, 8
+"""Intervals in a period of the highest frequency to begin with, and in moves over many periods."""
 
-FEWEST = 400
-"""Intervals to begin with, however slow everything is."""
+FEWEST, MANY = 400, 2_400
+"""Intervals to begin with, however slow everything is; and so many that periods must do with fewer: a programme that
+follows one mode takes a second then, and one that follows four takes two."""
+
+MANY_POINTS = 100.0
+"""Points of edges that make a programme as large again."""
 
 SPLIT = 4
 """Parts that an interval is divided into where the force changes."""
@@ -68,7 +72,10 @@ class Grid:
     def even(cls, problem: Problem, duration: float) -> Grid:
         """Fine enough for all modes in a duration [s]; of an even number of intervals: one node is in the middle."""
         periods = duration * problem.fastest / (2.0 * math.pi)
-        return cls(problem, np.linspace(0.0, 1.0, 2 * math.ceil(0.5 * max(FEWEST, PER_PERIOD * periods)) + 1))
+        points = sum(_points_on(edge, duration) for edge in problem.edges)
+        many = MANY / ((2.0 + len(problem.tracked)) / 3.0 + points / MANY_POINTS)
+        count = max(FEWEST, min(PER_PERIOD * periods, max(many, FEWEST_PER_PERIOD * periods)))
+        return cls(problem, np.linspace(0.0, 1.0, 2 * math.ceil(0.5 * count) + 1))
 
     @property
     def intervals(self) -> int:
@@ -109,8 +116,7 @@ class Grid:
         """The farthest move in a duration [s]."""
         rates, tolerances = [one.rate for one in self.peaks], [one.tolerance for one in self.peaks]
         for edge in self.problem.edges:
-            span = abs(complex(edge.rate(np.array(1.0)) - edge.rate(np.array(0.0)))) / (2.0 * math.pi)
-            count = 1 if edge.is_point else math.ceil(POINTS_PER_RIPPLE * span * duration) + 3
+            count = _points_on(edge, duration)
             rates += edge.rate(np.linspace(0.0, 1.0, count)).tolist()
             tolerances += [edge.tolerance] * count
         points = np.array(rates, dtype=complex)
@@ -133,3 +139,9 @@ class Grid:
             if abs(duration - past[0]) < SETTLED * duration:
                 break
         return found
+
+
+def _points_on(edge: Edge, duration: float) -> int:
+    """At how many points of an edge vibration is limited to begin with."""
+    span = abs(complex(edge.rate(np.array(1.0)) - edge.rate(np.array(0.0)))) / (2.0 * math.pi)
+    return 1 if edge.is_point else math.ceil(POINTS_PER_RIPPLE * span * duration) + 3

@@ -10,6 +10,7 @@ minimised, by the conditions of Lagrange. (The p of witness.py is zero at every 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -24,7 +25,7 @@ __all__ = ["ActiveTolerance", "Polished", "polish"]
 MAXIMUM_STEPS = 50
 
 ACCEPTED = 3e-12
-"""Equations (all scaled to 1) that are missed by less than this are met; rounding in long moves leaves no less."""
+"""Equations (all scaled to 1) that are missed by less than this are met, or by what rounding leaves of tight limits."""
 
 STILL = 1e-9
 """After a step of this part of the duration the next one is rounding. Met equations alone do not say so: where they
@@ -33,8 +34,26 @@ leave a choice, the shortest of all solutions is still to be found."""
 RANK = 1e-11
 """Singular values below this part of the largest are zero: harmonics and symmetric moves drop the rank."""
 
+NO_CHOICE = 1e-9
+"""As many equations as unknowns leave no choice, if their slopes have no singular value below this part of the largest:
+then they are solved alone, which loses fewer digits."""
+
+SAMPLES, SMALLEST = 32, 1e-13
+"""Samples for each mode of the functions that are made orthonormal; combinations smaller than this part of the largest
+are nothing but rounding."""
+
+ROUNDING, ROUNDINGS = 4e-16, 3.0
+"""Of each equation, before they are combined; and so many times what rounding of the times leaves of outputs."""
+
 CLOSEST = 0.5
 """No arc loses more than this part of its length in one step."""
+
+VANISHED = 1e-7
+"""An arc that is shorter than this part of the duration, and would be shorter still, is none."""
+
+MISSED = 1e-10
+"""The target is missed by no more than this part of it, and left in the whole duration by no more: what rounding of the
+times leaves where modes are slow."""
 
 FARTHEST = 0.5
 """A step of more than this part of the duration is lost."""
@@ -67,6 +86,12 @@ class _Equation:
     at: int
     including_end: bool = False
 
+    def value(self, t: NDArray[np.float64], steps: NDArray[np.float64]) -> float:
+        """By how much it is missed."""
+        before = np.arange(self.at) if self.at < steps.size else np.flatnonzero(t[: steps.size] < t[self.at])
+        missed = float(self.phi(t[self.at] - t[before], 0) @ steps[before]) - self.side
+        return missed + float(self.phi(np.zeros(1), 0)[0]) * float(steps[-1]) if self.including_end else missed
+
 
 def polish(problem: Problem, structure: Structure, tolerances: Sequence[ActiveTolerance] = ()) -> Polished | None:
     """The exact times of a structure near given ones, or None when Newton's method does not find any.
@@ -86,15 +111,19 @@ def polish(problem: Problem, structure: Structure, tolerances: Sequence[ActiveTo
     t = np.concatenate([structure.times, [touch.time for touch in structure.touches]]) / unit
     equations = _equations(problem, structure)
     waves = [(one.rate * unit, one.tolerance) for one in tolerances]
+    combined = _orthonormal(problem.rates * unit, float(t[end]))
     multipliers = np.zeros(len(equations) + len(waves))
     goal = np.zeros(t.size - 1)
     goal[end - 1] = 1.0
     met: NDArray[np.float64] | None = None
     least, moved = np.inf, np.inf
+    largest = float(np.abs(combined).sum(axis=1).max())
+    accepted = max(ACCEPTED, ROUNDINGS * problem.rounding(structure.end), ROUNDING * largest)
     for _ in range(MAXIMUM_STEPS):
-        values, slopes, curve = _system(t, steps, equations, waves, multipliers)
-        error = float(np.abs(values).max())
-        if error <= ACCEPTED and (error <= least or moved > STILL):
+        values, slopes, curve = _system(t, steps, equations, waves, multipliers, combined)
+        error, (distance, velocity) = float(np.abs(values).max()), (one.value(t, steps) for one in equations[:2])
+        missed = max(abs(distance), abs(velocity) * t[end])
+        if error <= accepted and missed <= MISSED and (error <= least or moved > STILL):
             met, least = t, error
         if met is not None and moved <= STILL and error >= 0.5 * least:
             break
@@ -102,15 +131,22 @@ def polish(problem: Problem, structure: Structure, tolerances: Sequence[ActiveTo
         moved = float(np.abs(step).max()) / t[end]
         if not moved < FARTHEST:
             break
-        t = np.append(0.0, t[1:] + _shortened(t[: end + 1], step[:end]) * step)
+        part = _shortened(t[: end + 1], step[:end])
+        t = np.append(0.0, t[1:] + part * step)
+        shortest = int(np.argmin(np.diff(t[: end + 1])))
+        if part < 1.0 and t[shortest + 1] - t[shortest] < VANISHED * t[end]:
+            return polish(problem, _moved(structure, t * unit).without(shortest), tolerances) if end > 2 else None
     if met is None:
         return None
-    arcs = [replace(arc, start=float(time)) for arc, time in zip(structure.arcs, met[:end] * unit, strict=True)]
-    touches = [
-        replace(one, time=float(when)) for one, when in zip(structure.touches, met[end + 1 :] * unit, strict=True)
-    ]
-    exact = Structure(tuple(arcs), tuple(touches), float(met[end]) * unit)
-    return Polished(exact, multipliers[len(equations) :] >= 0.0)
+    return Polished(_moved(structure, met * unit), multipliers[len(equations) :] >= 0.0)
+
+
+def _moved(structure: Structure, times: NDArray[np.float64]) -> Structure:
+    """A structure at other times [s]: starts of its arcs, the end, the touches."""
+    end = len(structure.arcs)
+    arcs = [replace(arc, start=float(time)) for arc, time in zip(structure.arcs, times[:end], strict=True)]
+    touches = [replace(one, time=float(when)) for one, when in zip(structure.touches, times[end + 1 :], strict=True)]
+    return Structure(tuple(arcs), tuple(touches), float(times[end]))
 
 
 def _equations(problem: Problem, structure: Structure) -> list[_Equation]:
@@ -133,6 +169,20 @@ def _equations(problem: Problem, structure: Structure) -> list[_Equation]:
         found.append(_Equation(_deflection(rates, weights, 0, 1.0), sign, at))
         found.append(_Equation(_deflection(rates, weights, 1, 1.0 / scale), 0.0, at))
     return found
+
+
+def _orthonormal(rates: NDArray[np.complex128], end: float) -> NDArray[np.float64]:
+    """How the equations of the end combine to functions that are orthonormal over the duration.
+
+    In a move that is short for the modes, or for their differences, the functions are nearly the same, and their
+    differences tell where the switches are.
+    """
+    lead = np.linspace(0.0, end, SAMPLES * (1 + rates.size))
+    waves = np.exp(-np.multiply.outer(lead, rates))
+    columns = np.column_stack([0.5 * lead**2, lead, *(part for wave in waves.T for part in (wave.real, wave.imag))])
+    # steps sum to zero, so constants do not matter
+    _, sizes, combined = np.linalg.svd((columns - columns.mean(axis=0)) / math.sqrt(lead.size), full_matrices=False)
+    return np.asarray(combined / np.maximum(sizes, SMALLEST * sizes[0])[:, None])
 
 
 def _decay(rate: complex, part: complex) -> Wave:
@@ -160,8 +210,14 @@ def _system(
     equations: Sequence[_Equation],
     waves: Sequence[tuple[complex, float]],
     multipliers: NDArray[np.float64],
+    combined: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Values (equation,), slopes (equation, unknown), and second derivatives summed with the multipliers."""
+    """Values (equation,), slopes (equation, unknown), and second derivatives summed with the multipliers.
+
+    The first equations, those of the end, are combined as the square matrix says.
+    """
+    of_end = combined.shape[0]
+    multipliers = np.concatenate([multipliers[:of_end] @ combined, multipliers[of_end:]])
     count, end = len(equations) + len(waves), steps.size - 1
     values, slopes = np.zeros(count), np.zeros((count, t.size))
     curve = np.zeros((t.size, t.size))
@@ -169,9 +225,7 @@ def _system(
         at = equation.at
         before = np.arange(at) if at <= end else np.flatnonzero(t[: end + 1] < t[at])
         lag, size = t[at] - t[before], steps[before]
-        values[k] = equation.phi(lag, 0) @ size - equation.side
-        if equation.including_end:
-            values[k] += float(equation.phi(np.zeros(1), 0)[0]) * steps[-1]
+        values[k] = equation.value(t, steps)
         first, second = equation.phi(lag, 1) * size, equation.phi(lag, 2) * size * multipliers[k]
         slopes[k, before] -= first
         slopes[k, at] += first.sum()
@@ -194,6 +248,7 @@ def _system(
         bend[end, end] = twice.sum()
         second = 2.0 * (np.real(total.conjugate() * bend) + np.real(np.multiply.outer(change.conj(), change)))
         curve += multipliers[k] * second / tolerance**2
+    values[:of_end], slopes[:of_end] = combined @ values[:of_end], combined @ slopes[:of_end]
     return values, slopes[:, 1:], curve[1:, 1:]
 
 
@@ -202,6 +257,8 @@ def _lagrange_step(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Newton's step for: least goal . t with all values zero; and the new multipliers."""
     count, size = slopes.shape
+    if count == size and np.linalg.cond(slopes) < 1.0 / NO_CHOICE:
+        return np.asarray(np.linalg.solve(slopes, -values)), np.asarray(np.linalg.solve(slopes.T, -goal))
     left = np.block([[curve, slopes.T], [slopes, np.zeros((count, count))]])
     right = np.concatenate([-goal, -values])
     answer = np.linalg.lstsq(left, right, rcond=RANK)[0]

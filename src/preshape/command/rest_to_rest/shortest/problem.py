@@ -52,6 +52,16 @@ class Problem:
         """Largest frequency of all modes and edges [rad/s]."""
         return max(float(np.abs(self.rates).max()), *(2.0 * math.pi * edge.high for edge in self.edges), 0.0)
 
+    @property
+    def tracked(self) -> list[int]:
+        """Modes that limited outputs show: those whose motion a programme must follow."""
+        return [int(mode) for mode in np.flatnonzero((self.rows != 0.0).any(axis=0))]
+
+    def rounding(self, duration: float) -> float:
+        """What rounding of times near `duration` [s] leaves of outputs, in units of their limits [-]."""
+        steepest = (np.abs(self.rows) * np.abs(self.rates)).sum(axis=1).max(initial=0.0)
+        return float(np.finfo(float).eps * duration * steepest)
+
     def held_mode(self, row: int) -> int | None:
         """The one mode that an output shows, if a constant force can hold it on its limit; else None."""
         modes = np.flatnonzero(self.rows[row])

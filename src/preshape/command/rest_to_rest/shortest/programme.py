@@ -105,7 +105,7 @@ def farthest(
     rates, steps = problem.rates * duration, np.diff(grid)
     count = steps.size
     # the columns are the levels, then the real and the imaginary part of each limited mode's phasor
-    tracked = [int(mode) for mode in np.flatnonzero((problem.rows != 0.0).any(axis=0))]
+    tracked = problem.tracked
     size = count * (1 + 2 * len(tracked))
     system = _Equalities(rates, grid, tracked)
     per_output = (problem.rows.shape[0], count * SAMPLES)

@@ -16,11 +16,11 @@ from preshape.command.rest_to_rest.shortest.adjoint import from_structure
 from preshape.command.rest_to_rest.shortest.arcs import read_arcs, transitions
 from preshape.command.rest_to_rest.shortest.grid import Grid
 from preshape.command.rest_to_rest.shortest.motion import Motion
-from preshape.command.rest_to_rest.shortest.on_grid import kept_on_grid
+from preshape.command.rest_to_rest.shortest.on_grid import AT_REST, kept_on_grid
 from preshape.command.rest_to_rest.shortest.polish import ActiveTolerance, polish
 from preshape.command.rest_to_rest.shortest.problem import Problem
 from preshape.command.rest_to_rest.shortest.programme import Farthest
-from preshape.command.rest_to_rest.shortest.structure import Structure
+from preshape.command.rest_to_rest.shortest.structure import Arc, Structure
 from preshape.command.rest_to_rest.shortest.witness import from_grid
 from preshape.engine.edges import vibration_peaks
 from preshape.errors import InputError
@@ -35,8 +35,9 @@ GROWN = 1.2
 
 REFINEMENTS = 3
 
-LARGEST, MANY_POINTS = 3_000, 20.0
-"""No grid is refined to more intervals, or half as many with so many points: the solver takes seconds then."""
+LARGEST, MANY_POINTS, SUMMED = 3_000, 20.0, 0.2
+"""No grid is refined to more intervals: the solver takes seconds then. Half as many with so many points, with four
+modes followed instead of one, or with five more modes in sums."""
 
 LONGEST = 250.0
 """Periods of the fastest mode that a move may take; the first grid has 24 intervals in each."""
@@ -44,8 +45,16 @@ LONGEST = 250.0
 PREFERRED = 1e-5
 """A command on a grid must be shorter by this part to be preferred to one of exact arcs."""
 
-KEPT = 1e-10
-"""Limits may be exceeded by rounding only: this part of them."""
+KEPT, ROUNDINGS, MOST_KEPT = 1e-10, 3.0, 1e-9
+"""Limits may be exceeded by rounding only: this part of them, or so many times what rounding of the times leaves, but
+never by more than the last."""
+
+MOST = 120
+"""More arcs and touches than this are no structure but what a grid makes of a level that varies; Newton's method would
+take seconds to find that out."""
+
+VERTICES = 1_000
+"""Vertices are not asked for on grids of more intervals: ending in one takes seconds there."""
 
 INACTIVE = 1e-6
 """Part of the largest multiplier below which a point does not matter."""
@@ -85,8 +94,15 @@ class Found:
         return max(0.0, 1.0 - self.least / self.duration)
 
 
-def shortest_move(problem: Problem) -> Found | None:
+def shortest_move(problem: Problem, first: Structure | None = None) -> Found | None:
     """The shortest command found for a problem, and how short any could be; None if the solvers found none.
+
+    Parameters
+    ----------
+    problem : Problem
+        What is asked.
+    first : Structure, optional
+        Arcs that may be the shortest: if they prove to be, nothing is searched.
 
     Raises
     ------
@@ -94,14 +110,17 @@ def shortest_move(problem: Problem) -> Found | None:
         If the move takes too many periods of the fastest mode.
     """
     least = 2.0 * problem.unit
-    best: Found | None = None
+    best = None if first is None else _proved(problem, first)
+    if best is not None and best.gap <= PROVED:
+        return best
+    least = max(least, 0.0 if best is None else best.least)
     grid = _first_grid(problem, least)
     found = grid.reaching(problem.target, least)
     if found.times[-1] > GROWN * least:
         grid = _first_grid(problem, float(found.times[-1]))
         found = grid.reaching(problem.target, float(found.times[-1]))
     for _ in range(REFINEMENTS + 1):
-        for vertex in (False,) if problem.edges else (False, True):
+        for vertex in (False,) if problem.edges or grid.intervals > VERTICES else (False, True):
             if vertex:
                 found = grid.farthest(float(found.times[-1]), vertex=True)
             least = max(least, from_grid(problem, found).least_duration(problem.target))
@@ -113,7 +132,9 @@ def shortest_move(problem: Problem) -> Found | None:
                 if 1.0 - least / best.duration <= PROVED:
                     return Found(best.motion, best.structure, min(least, best.duration))
         finer = grid.refined(transitions(problem, found))
-        if finer.intervals > LARGEST / (1.0 + found.points.size / MANY_POINTS):
+        summed = np.count_nonzero(problem.rows) - problem.rows.shape[0]
+        cost = (2.0 + len(problem.tracked)) / 3.0 + SUMMED * summed + found.points.size / MANY_POINTS
+        if finer.intervals > LARGEST / cost:
             break
         grid = finer
         found = grid.reaching(problem.target, float(found.times[-1]))
@@ -123,12 +144,23 @@ def shortest_move(problem: Problem) -> Found | None:
     return best if best is None else Found(best.motion, best.structure, least)
 
 
+def _proved(problem: Problem, first: Structure) -> Found | None:
+    """A structure made exact, with its bound."""
+    exact = _exchanged(problem, first, [])
+    if exact is None:
+        return None
+    structure, motion, active = exact
+    least = from_structure(problem, structure, motion, None, active).least_duration(problem.target)
+    return Found(motion, structure, min(least, structure.end))
+
+
 def _first_grid(problem: Problem, duration: float) -> Grid:
     periods = duration * problem.fastest / (2.0 * np.pi)
     if periods > LONGEST:
         raise InputError(
             f"the move takes {duration:.4g} s or more, {periods:.3g} periods of the fastest mode, and no more than "
-            f"{LONGEST:g} are solved: leave out modes that are that fast, or move less far or with more force."
+            f"{LONGEST:g} are solved: leave out modes that are that fast, or move less far, with more force or more "
+            "deflection."
         )
     return Grid.even(problem, duration)
 
@@ -137,10 +169,23 @@ def _exact(problem: Problem, found: Farthest) -> Iterator[tuple[Structure, Motio
     """Exact commands that a solution on a grid may stand for, limits checked."""
     plain = read_arcs(problem, found)
     several = read_arcs(problem, found, split=True)
-    for structure in [plain] if several == plain else [plain, several]:
+    candidates: list[Structure] = [plain] if several == plain else [plain, several]
+    if problem.rows.size == 0:
+        candidates.insert(0, _where_p_changes(problem, found))
+    for structure in candidates:
+        if len(structure.arcs) + len(structure.touches) > MOST:
+            continue
         exact = _exchanged(problem, structure, _active(problem, found))
         if exact is not None:
             yield exact
+
+
+def _where_p_changes(problem: Problem, found: Farthest) -> Structure:
+    """Full force with the sign of the grid's p: where switches are too close for the levels to tell them apart."""
+    starts, signs = from_grid(problem, found).signs()
+    starts[0] = 0.0
+    arcs = [Arc(float(start), float(sign)) for start, sign in zip(starts, signs, strict=True)]
+    return Structure(tuple(arcs), (), float(found.times[-1]))
 
 
 def _exchanged(
@@ -155,7 +200,9 @@ def _exchanged(
         motion = Motion(problem, structure.times, structure.levels)
         peaks = vibration_peaks(problem.edges, motion.leads, motion.steps)
         if polished.needed.all() and all(peak.excess <= KEPT for peak in peaks):
-            return (structure, motion, active) if (motion.largest() <= 1.0 + KEPT).all() else None
+            kept = min(max(KEPT, ROUNDINGS * problem.rounding(structure.end)), MOST_KEPT)
+            right = (motion.largest() <= 1.0 + kept).all() and (motion.residuals <= AT_REST).all()
+            return (structure, motion, active) if right else None
         active = [one for one, needed in zip(active, polished.needed, strict=True) if needed]
         near = SAME_PEAK / structure.end
         active = [

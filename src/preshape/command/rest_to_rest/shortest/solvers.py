@@ -30,6 +30,8 @@ def by_interior_points(
     settings.time_limit = TIME_LIMIT
     settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = PRECISION
     settings.direct_solve_method = "qdldl"
+    # programme.py scales by what things mean; rescaled, programmes with limits of 1 % of the static fail or take longer
+    settings.equilibrate_enable = False
     cones = [clarabel.ZeroConeT(equalities), clarabel.NonnegativeConeT(inequalities)]
     cones += [clarabel.SecondOrderConeT(3)] * ((sides.size - equalities - inequalities) // 3)
     quadratic = sparse.csc_matrix((cost.size, cost.size))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +63,20 @@ class Structure:
     def steps(self) -> NDArray[np.float64]:
         """By how much the force steps at each time, the end included [-], shape (arc + 1,)."""
         return np.diff(self.levels, prepend=0.0, append=0.0)
+
+    def without(self, number: int) -> Structure:
+        """Without one arc; its neighbours meet in the middle of it, or are one if they do the same."""
+        first, last = number == 0, number == len(self.arcs) - 1
+        times = self.times
+        middle = 0.5 * float(times[number] + times[number + 1])
+        arcs = [*self.arcs[:number], *self.arcs[number + 1 :]]
+        if first:
+            arcs[0] = replace(arcs[0], start=float(times[0]))
+        elif not last:
+            before, after = arcs[number - 1], arcs[number]
+            same = (before.level, before.row, before.sign) == (after.level, after.row, after.sign)
+            arcs[number - 1 : number + 1] = [before] if same else [before, replace(after, start=middle)]
+        return Structure(tuple(arcs), self.touches, self.end)
 
     @property
     def contacts(self) -> list[tuple[float, int, float]]:

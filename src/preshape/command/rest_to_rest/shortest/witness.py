@@ -27,7 +27,7 @@ SAMPLES_PER_PERIOD = 32
 FEWEST_SAMPLES = 6
 
 ROUNDING = 1e-14
-"""The integrals are known to this part of them; the bound allows for it."""
+"""Sums are known to this part of them; the bound allows for it."""
 
 BISECTIONS = 60
 
@@ -76,7 +76,7 @@ class Witness:
         left, right, pieces = self._of_one_sign()
         areas = np.abs(self.values(right, pieces, -1) - self.values(left, pieces, -1))
         reach = float(areas.sum() + self.masses.sum()) + self.price
-        excess = max(reach - target, 0.0) + ROUNDING * (reach + target)
+        excess = max(reach - target, 0.0) + ROUNDING * (reach + target) + self._cancelled()
         # A mass comes off only with all of its piece, so it is counted where the piece ends, seen from the end removed.
         first, last = np.flatnonzero(np.diff(pieces, prepend=-1)), np.flatnonzero(np.diff(pieces, append=-1))
         from_left, from_right = areas.copy(), areas.copy()
@@ -91,6 +91,24 @@ class Witness:
         k = areas.size - 1 - int(np.searchsorted(gone[::-1], excess))
         end = self._at_area(right[k], left[k], pieces[k], excess - gone[k] + from_right[k])
         return float(max(end - left[0], right[-1] - begin))
+
+    def signs(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where intervals begin in which p keeps its sign [s], and the signs; no two neighbours have the same."""
+        left, right, pieces = self._of_one_sign()
+        sign = np.sign(self.values(0.5 * (left + right), pieces))
+        left, sign = left[sign != 0.0], sign[sign != 0.0]
+        changes = np.append(True, np.diff(sign) != 0.0)
+        return left[changes], sign[changes]
+
+    def _cancelled(self) -> float:
+        """What rounding leaves of the integral of \\|p\\| where large parts of p cancel [s^2].
+
+        Between two changes of its sign it is the difference of two antiderivatives, each with the error of its parts.
+        """
+        lead = float(self.times[-1] - self.times[0])
+        parts = (np.abs(self.phasors) / np.abs(self.rates)).sum(axis=1)
+        line = (lead + abs(self.constant)) ** 2
+        return float(np.finfo(float).eps * (parts.sum() + line))
 
     def _at_area(self, start: float, stop: float, piece: int, area: float) -> float:
         """The time, from `start` towards `stop`, where the integral of p from there on amounts to `area`."""
@@ -117,10 +135,10 @@ class Witness:
             value = self.values(times, pieces, derivative)
             found = np.flatnonzero((value[:-1] * value[1:] < 0.0) & (pieces[:-1] == pieces[1:]))
             roots = self._roots(times[found], times[found + 1], pieces[found], derivative)
-            # a stable sort keeps the two samples at a joint of pieces in order, and roots lie inside
-            order = np.argsort(np.concatenate([times, roots]), kind="stable")
-            times = np.concatenate([times, roots])[order]
-            pieces = np.concatenate([pieces, pieces[found]])[order]
+            times, pieces = np.concatenate([times, roots]), np.concatenate([pieces, pieces[found]])
+            # by pieces first: a root may be at the joint, and then belongs to the piece before it or after it
+            order = np.lexsort((times, pieces))
+            times, pieces = times[order], pieces[order]
         inside = pieces[:-1] == pieces[1:]
         return times[:-1][inside], times[1:][inside], pieces[:-1][inside]
 
