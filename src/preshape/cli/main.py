@@ -15,6 +15,7 @@ COMMANDS = {
     "design": "Design a shaper for known modes.",
     "analyze": "Show what a shaper does at its modes.",
     "shape": "Shape a command that lies in a CSV file.",
+    "stream": "Shape standard input into standard output, sample by sample.",
     "compare": "Compare every kind of command for one move of a flexible machine.",
     "move": "Move a flexible body from rest to rest, within a deflection.",
     "simulate": "Simulate your machine under a command, unshaped beside shaped.",
@@ -44,7 +45,9 @@ def _show_version(ctx: click.Context, parameter: click.Parameter, value: bool) -
     if value and not ctx.resilient_parsing:
         from importlib.metadata import version
 
-        click.echo(f"preshape {version('preshape')}")
+        from preshape.kernel import active_kernel
+
+        click.echo(f"preshape {version('preshape')}, {active_kernel()} kernel")
         ctx.exit()
 
 

@@ -1,5 +1,6 @@
 """The inner loops: what the rest of the library spends its time in."""
 
+from preshape.kernel.active import active_kernel, compiled
 from preshape.kernel.box_exponentials import box_exponentials
 from preshape.kernel.chebyshev_exponentials import chebyshev_derivative, chebyshev_values, orthonormal_series
 from preshape.kernel.divided_exponentials import DividedExponentials, near_rates
@@ -12,15 +13,22 @@ from preshape.kernel.exponential_sum import exponential_sum, exponential_sum_uni
 from preshape.kernel.modal_scan import scanned_outputs, twice_summed
 from preshape.kernel.phi_functions import phi_functions
 from preshape.kernel.sparse_convolution import sparse_convolve
+from preshape.kernel.stream_reference import EngineLike, ReferenceEngine
+from preshape.kernel.stream_rings import Taps
 
 __all__ = [
     "DividedExponentials",
     "DrivenOutput",
     "DrivenPhasors",
+    "EngineLike",
     "Extremum",
+    "ReferenceEngine",
+    "Taps",
+    "active_kernel",
     "box_exponentials",
     "chebyshev_derivative",
     "chebyshev_values",
+    "compiled",
     "driven_phasors",
     "exponential_sum",
     "exponential_sum_uniform",

@@ -10,10 +10,12 @@ from preshape.workflow.save_move import save_force
 from preshape.workflow.save_simulation import save_partial, save_simulation
 from preshape.workflow.shape_file import ShapedFile, shape_file
 from preshape.workflow.simulate_plant import simulate_plant
+from preshape.workflow.stream_pipe import PipedStream, stream_pipe
 
 __all__ = [
     "Analysis",
     "ModeAnalysis",
+    "PipedStream",
     "SavedCalibration",
     "ShapedFile",
     "analyze",
@@ -27,4 +29,5 @@ __all__ = [
     "save_simulation",
     "shape_file",
     "simulate_plant",
+    "stream_pipe",
 ]
