@@ -1,7 +1,7 @@
 """LinuxCNC: a HAL component for one joint, for version 2.9 and for what comes after it.
 
-Master calls pins real and bool where 2.9 says float and bit, and sets them by out_set(x) where 2.9 assigns. The template
-is written for master; :func:`_for_2_9` turns it back.
+Master calls pins real and bool where 2.9 says float and bit, and sets them by out_set(x) where 2.9 assigns. The
+template is written for master; :func:`_for_2_9` turns it back.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ PERIOD_TOLERANCE = 1e-3
 TESTED = {
     "2.9": "preshape's tests build it with halcompile 2.9, run it in halrun, and compare every bit with Python.",
     "master": (
-        "preshape's tests run its C part behind a stand-in for halcompile's macros; LinuxCNC's own master did not build "
-        "it yet."
+        "preshape's tests run its C part behind a stand-in for halcompile's macros; LinuxCNC's own master did not "
+        "build it yet."
     ),
 }
 
