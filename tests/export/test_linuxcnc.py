@@ -149,7 +149,7 @@ def test_nine_joints_with_the_longest_shaper_fit_into_the_memory_of_hal(tmp_path
 
 
 def test_several_joints_share_a_module(tmp_path: Path) -> None:
-    """And the documentation is made without a complaint."""
+    """Each instance has its own past; halcompile knows the pins by their names."""
     needed("halcompile")
     path = tmp_path / "gantry_x.comp"
     path.write_text(str(render(SHAPER, "linuxcnc", dt=DT, name="gantry_x").files["gantry_x.comp"]))

@@ -76,13 +76,15 @@ def save_export(exported: Exported, folder: str | os.PathLike[str], *, force: bo
     try:
         target.mkdir(parents=True, exist_ok=True)
         _replace_all(target, contents)
-    except OSError as error:
+    except BaseException as error:
         if new:
             with contextlib.suppress(OSError):
                 target.rmdir()
-        raise InputError(
-            f"cannot write into {target}: {error.strerror or error}; choose a folder that can be written."
-        ) from error
+        if isinstance(error, OSError):
+            raise InputError(
+                f"cannot write into {target}: {error.strerror or error}; choose a folder that can be written."
+            ) from error
+        raise
     return SavedExport(tuple(target / name for name in exported.files))
 
 
@@ -130,9 +132,9 @@ def _replace_all(folder: Path, contents: Mapping[str, bytes]) -> None:
             place, old = folder / name, staged / f"{number}.old"
             place.parent.mkdir(parents=True, exist_ok=True)
             there = os.path.lexists(place)
+            done.append((place, old if there else None))
             if there:
                 os.replace(place, old)
-            done.append((place, old if there else None))
             os.replace(staged / f"{number}.new", place)
     except BaseException:
         for place, before in reversed(done):
