@@ -174,6 +174,22 @@ def test_two_shapers_share_a_program_and_take_the_memory_that_is_said(precision:
     assert sections == {".data": "0", ".bss": "0"}
 
 
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_no_multiplication_is_fused_on_a_processor_that_could(compiler: str, tmp_path: Path) -> None:
+    """With the options of the compile line, or with C99 alone; when fusing is asked for, there is something to fuse."""
+    needed(compiler)
+    if "x86_64" not in succeeded(compiler, "-dumpmachine"):
+        pytest.skip("the option is for x86-64")
+    folder = written(render(SHAPER, "c", dt=0.001), tmp_path)
+    line = render(SHAPER, "c", dt=0.001).target.next_step(render(SHAPER, "c", dt=0.001).placed)[1].split()
+    for flags, fused in ((line[1:4], False), (["-std=c99", "-O2"], False), (["-ffp-contract=fast", "-O2"], True)):
+        if compiler == "clang" and fused:
+            source = folder / "preshape_kernel.c"
+            source.write_text(source.read_text().replace("#pragma STDC", "/* #pragma STDC"))
+        succeeded(compiler, *flags, "-march=haswell", "-S", "preshape_kernel.c", "-o", "kernel.s", cwd=folder)
+        assert ("vfmadd" in (folder / "kernel.s").read_text()) == fused, flags
+
+
 def test_golden_samples_are_those_of_a_plain_convolution() -> None:
     """Independent of the kernel: numpy.convolve in double, to rounding; in single to its rounding."""
     for shaper in (SHAPER, SIGNED, LONG, ONE):

@@ -49,7 +49,7 @@ def _render(placed: Placed) -> Files:
         "precision": placed.precision,
         "guard": "#ifndef PRESHAPE_SINGLE" if single else "#ifdef PRESHAPE_SINGLE",
         "remedy": "everything with" if single else "without",
-        "flags": "-std=c99 -DPRESHAPE_SINGLE" if single else "-std=c99",
+        "flags": _flags(placed),
         "compile": _compile_line(placed),
         "delays": delay_rows(placed),
         "weights": weight_rows(placed),
@@ -82,10 +82,13 @@ def _parse(files: Files) -> Shaper:
     return read_shaper(f"{header}\n{source}", single='#error "single precision' in header)
 
 
+def _flags(placed: Placed) -> str:
+    return "-std=c99 -ffp-contract=off" + (" -DPRESHAPE_SINGLE" if placed.precision == "single" else "")
+
+
 def _compile_line(placed: Placed) -> str:
-    flag = " -DPRESHAPE_SINGLE" if placed.precision == "single" else ""
     return (
-        f"gcc -std=c99 -O2{flag} preshape_kernel.c {placed.name}.c {placed.name}_selftest.c -o {placed.name}_selftest"
+        f"gcc {_flags(placed)} -O2 preshape_kernel.c {placed.name}.c {placed.name}_selftest.c -o {placed.name}_selftest"
     )
 
 
