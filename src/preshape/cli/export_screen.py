@@ -13,24 +13,22 @@ __all__ = ["export_screen", "target_table"]
 
 
 def target_table() -> None:
-    """Every target with its limits."""
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for title in ("target", "what comes out", "versions", "precision", "taps", "samples", "negative taps"):
-        table.add_column(title, justify="right" if title in ("taps", "samples") else "left", overflow="fold")
+    """Every target with its versions and limits."""
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), show_header=False)
     for target in TARGETS.values():
         limits = target.limits
+        table.add_row(Text(target.name, style="bold cyan"), target.summary)
         table.add_row(
-            Text(target.name, style="bold cyan"),
-            target.summary,
-            ", ".join(target.versions),
-            ", ".join(limits.precisions),
-            f"{limits.taps}",
-            f"{limits.samples}",
-            "yes" if limits.negative else "no",
+            "",
+            Text(
+                f"version {' or '.join(target.versions)}; {' or '.join(limits.precisions)} precision; at most "
+                f"{limits.taps} taps, {limits.samples} samples long{'' if limits.negative else '; no negative taps'}",
+                style="dim",
+            ),
         )
     screen = console()
     screen.print(table)
-    screen.print("\nThe first version and precision are the defaults. Taps: most on the grid; samples: longest delay.")
+    screen.print("\nThe first version and precision named are the defaults.")
 
 
 def export_screen(exported: Exported, saved: SavedExport) -> None:
