@@ -16,6 +16,7 @@ COMMANDS = {
     "analyze": "Show what a shaper does at its modes.",
     "shape": "Shape a command that lies in a CSV file.",
     "stream": "Shape standard input into standard output, sample by sample.",
+    "export": "Write a shaper for somebody else's controller: C, LinuxCNC ...",
     "compare": "Compare every kind of command for one move of a flexible machine.",
     "move": "Move a flexible body from rest to rest, within a deflection.",
     "simulate": "Simulate your machine under a command, unshaped beside shaped.",

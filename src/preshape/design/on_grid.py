@@ -83,6 +83,8 @@ def on_grid(shaper: Shaper, dt: float, method: str = "linear") -> Shaper:
 
 def _linear(shaper: Shaper, dt: float) -> Shaper:
     delays, weights = shaper.taps(dt)
+    if delays[0] > 0:  # taps leave out a first impulse of amplitude 0, a shaper keeps it
+        delays, weights = np.insert(delays, 0, 0), np.insert(weights, 0, 0.0)
     return Shaper(delays * np.float64(dt), weights / weights.sum())
 
 

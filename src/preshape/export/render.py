@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,15 +13,22 @@ from preshape.checks import positive
 from preshape.design.on_grid import on_grid
 from preshape.errors import InputError
 from preshape.export.target import Exported, Placed, Target
+from preshape.export.targets import TARGETS
 from preshape.shaper import Shaper
+from preshape.vibration import residual_vibration
 
-__all__ = ["render_for"]
+__all__ = ["render"]
 
 NAME = re.compile(r"[a-z][a-z0-9_]{0,30}")
 
+TAKEN = "preshape"
+"""Names that begin so are the kernel's own."""
 
-def render_for(
-    targets: Mapping[str, Target],
+LARGEST_SUM = 1e6
+"""Most that the sizes of the weights may sum to: what the kernel takes."""
+
+
+def render(
     shaper: Shaper,
     target: str,
     *,
@@ -30,27 +38,82 @@ def render_for(
     precision: str | None = None,
     grid: str | None = None,
 ) -> Exported:
-    """The files of one of `targets`; see :func:`preshape.export.render`."""
-    if target not in targets:
-        raise InputError(f"target {target!r} is not known: it is {', '.join(targets)}.")
-    chosen = targets[target]
+    """A shaper as the files that somebody else's controller takes.
+
+    Parameters
+    ----------
+    shaper : Shaper
+        Any shaper.
+    target : str
+        For whom: a name of :data:`preshape.export.TARGETS`.
+    dt : float
+        Sample time of the controller [s].
+    name : str
+        What files and identifiers are called: a lower-case letter and up to 30 lower-case letters, digits, underscores.
+    version : str, optional
+        Of the target's language or host, one of its ``versions``; by default the first.
+    precision : {"double", "single"}, optional
+        Of the controller's arithmetic; by default the first that the target knows.
+    grid : str, optional
+        How impulses between samples are placed, a method of :func:`preshape.design.on_grid`; by default "exact", or
+        "linear" for a shaper that does not know its modes.
+
+    Returns
+    -------
+    Exported
+        The files, and in ``placed`` the shaper that the controller will run and the residuals it leaves at each mode.
+
+    Raises
+    ------
+    InputError
+        If the target, the version, the precision, the name or the grid method is not known, dt is not a positive
+        number, or the shaper does not fit the target's limits or the grid.
+
+    Examples
+    --------
+    >>> import preshape
+    >>> exported = render(preshape.design.zv((40.0, 0.0)), "c", dt=0.001, name="gantry_x")
+    >>> list(exported.files)[2:], exported.placed.latency_samples
+    (['gantry_x.h', 'gantry_x.c', 'gantry_x_selftest.c'], 13)
+    """
+    if target not in TARGETS:
+        raise InputError(f"target {target!r} is not known: it is {', '.join(TARGETS)}.")
+    chosen = TARGETS[target]
     version = _one_of("version", version, chosen.versions, target)
     precision = _one_of("precision", precision, chosen.limits.precisions, target)
-    if not NAME.fullmatch(name):
+    if not (isinstance(name, str) and NAME.fullmatch(name)) or name.startswith(TAKEN):
         raise InputError(
             f"name {name!r} cannot be used in every language: give a lower-case letter and up to 30 lower-case "
-            "letters, digits or underscores."
+            f"letters, digits or underscores, which do not begin with {TAKEN}."
         )
-    positive("dt", dt, "s")
+    placed = _placed(shaper, positive("dt", dt, "s"), grid, name, precision, version)
+    _check(chosen, placed)
+    return Exported(chosen, placed, chosen.render(placed))
+
+
+def _placed(shaper: Shaper, dt: float, grid: str | None, name: str, precision: str, version: str) -> Placed:
+    """The shaper on the grid, in the controller's precision."""
     if grid is None:  # the best that the shaper's record allows
         grid = "linear" if shaper.design.modes is None else "exact"
-    placed = on_grid(shaper, dt, grid)
-    delays, weights = placed.taps(dt)
-    _check(chosen, delays, weights, dt)
+    on = on_grid(shaper, dt, grid)
+    delays, weights = on.taps(dt)
+    if delays[0] > 0:  # the shaper keeps an impulse of amplitude 0 there, which the taps leave out
+        delays, weights = np.insert(delays, 0, 0), np.insert(weights, 0, 0.0)
     if precision == "single":
         weights = weights.astype(np.float32).astype(float)
-    whole = Placed(placed, dt, delays.astype(np.uint32), weights, name, precision, version)
-    return Exported(chosen, whole, chosen.render(whole))
+        on = _rounded(on, delays, weights, dt)
+    return Placed(on, dt, delays.astype(np.uint32), weights, name, precision, version)
+
+
+def _rounded(shaper: Shaper, delays: NDArray[np.intp], weights: NDArray[np.float64], dt: float) -> Shaper:
+    """The shaper of these weights, the last one what the others leave of 1, and what that leaves at the modes."""
+    whole = [*weights[:-1].tolist(), 1.0 - math.fsum(weights[:-1])]
+    rounded = Shaper(delays * np.float64(dt), whole, shaper.design)
+    if (modes := shaper.design.modes) is None:
+        return rounded
+    left = residual_vibration(rounded, [mode.frequency for mode in modes], [mode.damping for mode in modes])
+    settings = {**shaper.design.settings, "residuals": left.tolist()}
+    return rounded.with_design(replace(shaper.design, settings=settings, residual=float(left.max())))
 
 
 def _one_of(what: str, given: str | None, allowed: tuple[str, ...], target: str) -> str:
@@ -61,19 +124,23 @@ def _one_of(what: str, given: str | None, allowed: tuple[str, ...], target: str)
     return given
 
 
-def _check(target: Target, delays: NDArray[np.intp], weights: NDArray[np.float64], dt: float) -> None:
-    limits = target.limits
-    if delays.size > limits.taps:
+def _check(target: Target, placed: Placed) -> None:
+    limits, taps = target.limits, placed.delays.size
+    at = f"at dt = {placed.dt:g} s and target {target.name} holds"
+    if taps > limits.taps:
         raise InputError(
-            f"the shaper has {delays.size} taps at dt = {dt:g} s and target {target.name} holds {limits.taps}: design "
-            "one with fewer impulses, or sample less often."
+            f"the shaper has {taps} taps {at} {limits.taps}: design one with fewer impulses, or sample less often."
         )
-    if int(delays[-1]) > limits.samples:
+    if placed.latency_samples > limits.samples:
         raise InputError(
-            f"the shaper is {int(delays[-1])} samples long at dt = {dt:g} s and target {target.name} holds "
-            f"{limits.samples}: sample less often."
+            f"the shaper is {placed.latency_samples} samples long {at} {limits.samples}: sample less often."
         )
-    if not limits.negative and float(weights.min()) < 0.0:
+    if not limits.negative and float(placed.weights.min()) < 0.0:
         raise InputError(
             f"the shaper has negative taps, which target {target.name} cannot hold: design a positive one."
+        )
+    if not (size := float(np.abs(placed.weights).sum())) <= LARGEST_SUM:
+        raise InputError(
+            f"the sizes of the shaper's weights sum to {size:g}, and {LARGEST_SUM:g} is the most: design a shaper with "
+            "smaller negative impulses."
         )

@@ -45,13 +45,14 @@ class Placed:
     Parameters
     ----------
     shaper : Shaper
-        On the grid, with ``design.settings`` of :func:`preshape.design.on_grid`.
+        As the target will run it: on the grid, in single precision with rounded amplitudes, the last one what the
+        others leave of 1; with ``design.settings`` of :func:`preshape.design.on_grid`, and what is left at the modes.
     dt : float
         Sample time of the controller [s].
     delays : ndarray of uint32, shape (tap,)
-        Delays [samples], increasing.
+        Delays [samples], increasing from 0.
     weights : ndarray, shape (tap,)
-        Weights [-], of sum 1, already rounded to the precision.
+        Weights [-], already rounded to the precision, so that they sum to 1 to its rounding.
     name : str
         An identifier in lower case that every target's language allows.
     precision : str
@@ -67,6 +68,26 @@ class Placed:
     name: str
     precision: str
     version: str
+
+    @property
+    def latency_samples(self) -> int:
+        """Samples until a step has arrived altogether."""
+        return int(self.delays[-1])
+
+    @property
+    def latency(self) -> float:
+        """The same as a time [s]."""
+        return self.latency_samples * self.dt
+
+    @property
+    def ring(self) -> int:
+        """Entries of the ring: the next power of two above the latency."""
+        return 1 << self.latency_samples.bit_length()
+
+    @property
+    def ring_bytes(self) -> int:
+        """Memory of the ring."""
+        return self.ring * (4 if self.precision == "single" else 8)
 
 
 @dataclass(frozen=True)
@@ -86,8 +107,10 @@ class Target:
     render : callable
         The files for a :class:`Placed` shaper.
     parse : callable
-        The shaper in such files, with the times [s] and the weights that the target will use. InputError when it is not
-        there.
+        The shaper in such files, with the times [s] and the weights that the target will use: that of
+        :class:`Placed`, bit for bit. InputError when it is not there.
+    next_step : callable
+        What the user does with the files, as lines of text; the command line shows them.
     """
 
     name: str
@@ -96,6 +119,7 @@ class Target:
     limits: Limits
     render: Callable[[Placed], Files]
     parse: Callable[[Files], Shaper]
+    next_step: Callable[[Placed], tuple[str, ...]] = field(default=lambda placed: ())
 
 
 @dataclass(frozen=True)

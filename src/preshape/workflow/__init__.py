@@ -6,6 +6,7 @@ from preshape.workflow.compare import compare
 from preshape.workflow.identify_plant import identify_plant
 from preshape.workflow.read_command import read_command
 from preshape.workflow.save import SavedCalibration, save_calibration
+from preshape.workflow.save_export import SavedExport, save_export
 from preshape.workflow.save_move import save_force
 from preshape.workflow.save_simulation import save_partial, save_simulation
 from preshape.workflow.shape_file import ShapedFile, shape_file
@@ -17,6 +18,7 @@ __all__ = [
     "ModeAnalysis",
     "PipedStream",
     "SavedCalibration",
+    "SavedExport",
     "ShapedFile",
     "analyze",
     "calibrate",
@@ -24,6 +26,7 @@ __all__ = [
     "identify_plant",
     "read_command",
     "save_calibration",
+    "save_export",
     "save_force",
     "save_partial",
     "save_simulation",

@@ -14,6 +14,10 @@
 #error "preshape's arithmetic must be rounded to its own type: compile for SSE or the like, not for x87"
 #endif
 
+#if defined(__clang__)
+#pragma STDC FP_CONTRACT OFF /* clang fuses multiplications even with -std=c99; gcc does not know this pragma */
+#endif
+
 #ifndef PRESHAPE_CLONES
 #define PRESHAPE_CLONES /* attribute for the hot loop, such as target_clones(...) */
 #endif

@@ -9,7 +9,7 @@
  *
  * One source, two precisions: compile with PRESHAPE_SINGLE defined for float, without it for double; the two may be
  * linked together. Every operation must be rounded to that precision: no -ffast-math, no fused multiply-add
- * (gcc -std=c99 or -ffp-contract=off), no x87 registers.
+ * (-ffp-contract=off for gcc and clang), no x87 registers.
  *
  * Memory is the caller's and fixed: the struct, and a ring of a power of two of entries, more than the longest delay
  * (PRESHAPE_RING(longest) of them). On a 64-bit machine a gather is 24 bytes, a scatter 64 at most.

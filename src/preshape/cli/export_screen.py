@@ -1,0 +1,61 @@
+"""An export on the terminal: what was written, what the controller will do, what comes next; and all the targets."""
+
+from __future__ import annotations
+
+from rich.table import Table
+from rich.text import Text
+
+from preshape.cli.screens import console
+from preshape.export import TARGETS, Exported
+from preshape.workflow import SavedExport
+
+__all__ = ["export_screen", "target_table"]
+
+
+def target_table() -> None:
+    """Every target with its versions and limits."""
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), show_header=False)
+    for target in TARGETS.values():
+        limits = target.limits
+        table.add_row(Text(target.name, style="bold cyan"), target.summary)
+        table.add_row(
+            "",
+            Text(
+                f"version {' or '.join(target.versions)}; {' or '.join(limits.precisions)} precision; at most "
+                f"{limits.taps} taps, {limits.samples} samples long{'' if limits.negative else '; no negative taps'}",
+                style="dim",
+            ),
+        )
+    screen = console()
+    screen.print(table)
+    screen.print("\nThe first version and precision named are the defaults.")
+
+
+def export_screen(exported: Exported, saved: SavedExport) -> None:
+    """The files, the shaper on the controller's grid, the next step."""
+    screen = console()
+    placed, design = exported.placed, exported.placed.shaper.design
+    screen.print(
+        Text(f"{placed.name}: {design.family}, target {exported.target.name} ({placed.version})", style="bold")
+    )
+    for path in saved.files:
+        screen.print(f"  {path}", soft_wrap=True)
+    screen.print(
+        f"\n{placed.delays.size} taps every {1e3 * placed.dt:.6g} ms, {placed.precision} precision; latency "
+        f"{placed.latency_samples} samples = {1e3 * placed.latency:.6g} ms; ring {placed.ring_bytes} bytes"
+    )
+    if design.modes is None:
+        screen.print("what it leaves of the vibration is not known: the shaper's file does not say its modes")
+    else:
+        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+        for title in ("mode", "vibration left", "samples a period"):
+            table.add_column(title, justify="left" if title == "mode" else "right")
+        left, each = design.settings["residuals"], design.settings["samples_per_period"]
+        for mode, residual, samples in zip(design.modes, left, each, strict=True):
+            table.add_row(str(mode), f"{100.0 * residual:.2g} %", f"{samples:.4g}")
+        screen.print(table)
+    if (placed.weights < 0.0).any():
+        screen.print(Text("! some taps are negative: the shaped command may exceed the command", style="bold yellow"))
+    screen.print()
+    for line in exported.target.next_step(placed):
+        screen.print(line, soft_wrap=True)
