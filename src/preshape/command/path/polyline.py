@@ -1,0 +1,135 @@
+"""Distances to a polyline: exact, in any number of dimensions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+__all__ = ["Nearest", "Polyline"]
+
+BLOCK = 4096
+"""Points looked at together, so that memory stays small."""
+
+ROUNDING = 1e-12
+
+MOST_BETWEEN = 32
+"""Vertices between the nearest places of two neighbouring points; with more the path is on another stretch."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Nearest:
+    """The nearest places of a polyline to some points.
+
+    Parameters
+    ----------
+    distances : ndarray, shape (point,)
+        How far [unit].
+    segments : ndarray of int, shape (point,)
+        On which segment the place is.
+    places : ndarray, shape (point, axis)
+        Where [unit].
+    """
+
+    distances: NDArray[np.float64]
+    segments: NDArray[np.intp]
+    places: NDArray[np.float64]
+
+
+class Polyline:
+    """Straight lines from vertex to vertex.
+
+    Parameters
+    ----------
+    vertices : ndarray, shape (vertex, axis)
+        At least two different ones; repeated ones are left out.
+
+    Examples
+    --------
+    >>> corner = Polyline(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0]]))
+    >>> corner.nearest(np.array([[1.0, 0.5], [3.0, -1.0]])).distances.round(6).tolist()
+    [0.5, 1.414214]
+    """
+
+    def __init__(self, vertices: NDArray[np.float64]) -> None:
+        moves = np.append(True, (np.diff(vertices, axis=0) != 0.0).any(axis=1))
+        self.vertices = vertices[moves]
+        self._ways = np.diff(self.vertices, axis=0)
+        self._squares = (self._ways**2).sum(axis=1)
+        # Of one class are segments whose lengths differ by less than a factor of two: then few vertices are candidates.
+        classes = np.floor(0.5 * np.log2(self._squares)).astype(int)
+        self._classes = []
+        for each in np.unique(classes):
+            members = np.flatnonzero(classes == each)
+            ends = np.concatenate([self.vertices[members], self.vertices[members + 1]])
+            self._classes.append((cKDTree(ends), members, float(np.sqrt(self._squares[members].max()))))
+
+    def nearest(self, points: NDArray[np.float64]) -> Nearest:
+        """The nearest places to points, shape (point, axis).
+
+        A segment of length h whose distance is d has an end within sqrt(d^2 + h^2/4); so those with an end that near,
+        for the smallest d known, are all that can hold the nearest place.
+        """
+        distances, segments = np.empty(len(points)), np.empty(len(points), dtype=np.intp)
+        vertices = cKDTree(self.vertices)
+        for first in range(0, len(points), BLOCK):
+            block = points[first : first + BLOCK]
+            vertex = vertices.query(block)[1]
+            segment = np.clip(vertex - 1, 0, len(self._ways) - 1)
+            best = self._distance(block, segment)
+            self._improve(block, np.arange(len(block)), np.clip(vertex, 0, len(self._ways) - 1), best, segment)
+            for tree, members, longest in self._classes:
+                reach = np.sqrt(best**2 + 0.25 * longest**2) * (1.0 + ROUNDING)
+                inside = tree.query_ball_point(block, reach)
+                counts = np.array([len(found) for found in inside])
+                if counts.any():
+                    which = np.concatenate([found for found in inside if found]).astype(np.intp) % members.size
+                    self._improve(block, np.repeat(np.arange(len(block)), counts), members[which], best, segment)
+            distances[first : first + BLOCK], segments[first : first + BLOCK] = best, segment
+        return Nearest(distances, segments, self._place(points, segments))
+
+    def sags(self, near: Nearest) -> NDArray[np.float64]:
+        """How far the polyline leaves the straight line between the nearest places of two neighbouring points.
+
+        Returns
+        -------
+        ndarray, shape (point - 1,)
+            [unit]; infinite where many vertices lie between the two.
+        """
+        low = np.minimum(near.segments[:-1], near.segments[1:])
+        between = np.maximum(near.segments[:-1], near.segments[1:]) - low
+        begin, way = near.places[:-1], np.diff(near.places, axis=0)
+        square = np.maximum((way**2).sum(axis=1), np.finfo(float).tiny)
+        sag = np.where(between > MOST_BETWEEN, np.inf, 0.0)
+        for step in range(1, min(int(between.max(initial=0)), MOST_BETWEEN) + 1):
+            here = np.flatnonzero((between >= step) & (between <= MOST_BETWEEN))
+            away = self.vertices[low[here] + step] - begin[here]
+            along = np.clip((away * way[here]).sum(axis=1) / square[here], 0.0, 1.0)
+            sag[here] = np.maximum(sag[here], np.linalg.norm(away - along[:, None] * way[here], axis=1))
+        return sag
+
+    def _improve(
+        self,
+        points: NDArray[np.float64],
+        which: NDArray[np.intp],
+        candidates: NDArray[np.intp],
+        best: NDArray[np.float64],
+        segment: NDArray[np.intp],
+    ) -> None:
+        """Take over the candidate segments of points that are nearer than what is known."""
+        found = self._distance(points[which], candidates)
+        order = np.argsort(-found, kind="stable")  # the last of a point is its nearest
+        nearest, where = np.full(len(points), np.inf), np.zeros(len(points), dtype=np.intp)
+        nearest[which[order]], where[which[order]] = found[order], candidates[order]
+        better = nearest < best
+        best[better], segment[better] = nearest[better], where[better]
+
+    def _place(self, points: NDArray[np.float64], segments: NDArray[np.intp]) -> NDArray[np.float64]:
+        begin, way = self.vertices[segments], self._ways[segments]
+        share = np.clip(((points - begin) * way).sum(axis=1) / self._squares[segments], 0.0, 1.0)
+        return np.asarray(begin + share[:, None] * way)
+
+    def _distance(self, points: NDArray[np.float64], segments: NDArray[np.intp]) -> NDArray[np.float64]:
+        return np.asarray(np.linalg.norm(points - self._place(points, segments), axis=1))
