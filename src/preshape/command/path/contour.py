@@ -21,8 +21,10 @@ class ContourError:
     ----------
     distances : ndarray, shape (time,)
         From each sample of the path to the nearest place of the curve [unit].
+    nearest : ndarray, shape (axis, time)
+        Those places [unit].
     largest : float
-        The largest of them [unit].
+        The largest of the distances [unit].
     bound : float
         What the path, straight from sample to sample, does not exceed between them either [unit].
     rms : float
@@ -34,6 +36,7 @@ class ContourError:
     """
 
     distances: NDArray[np.float64]
+    nearest: NDArray[np.float64]
     largest: float
     bound: float
     rms: float
@@ -79,13 +82,13 @@ def contour_error(commanded: ArrayLike, path: ArrayLike) -> ContourError:
     index = int(np.argmax(distances))
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
     pairs = np.stack([distances[:-1], distances[1:]])
-    # Between two samples: no farther than their places' chord is from the curve, and a distance changes no faster than
-    # the path advances.
-    bounds = np.minimum(pairs.max(axis=0) + line.sags(near), 0.5 * (pairs.sum(axis=0) + lengths))
+    # Between two samples also: a distance changes no faster than the path advances.
+    bounds = np.minimum(line.bounds_between(points, near), 0.5 * (pairs.sum(axis=0) + lengths))
     # The integral of the square of what is straight between two samples.
     squares = (pairs[0] ** 2 + pairs[0] * pairs[1] + pairs[1] ** 2) / 3.0
     return ContourError(
         distances=distances,
+        nearest=near.places.T,
         largest=float(distances[index]),
         bound=max(float(bounds.max()), float(distances[index])),
         rms=float(np.sqrt((squares @ lengths) / lengths.sum())),

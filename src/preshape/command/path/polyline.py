@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 __all__ = ["Nearest", "Polyline"]
 
@@ -17,6 +16,9 @@ ROUNDING = 1e-12
 
 MOST_BETWEEN = 32
 """Vertices between the nearest places of two neighbouring points; with more the path is on another stretch."""
+
+BESIDE = 8
+"""Segments on each side that are looked at then."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -54,13 +56,15 @@ class Polyline:
     """
 
     def __init__(self, vertices: NDArray[np.float64]) -> None:
+        from scipy.spatial import cKDTree
+
         moves = np.append(True, (np.diff(vertices, axis=0) != 0.0).any(axis=1))
         self.vertices = vertices[moves]
         self._ways = np.diff(self.vertices, axis=0)
         self._squares = (self._ways**2).sum(axis=1)
         # Of one class are segments whose lengths differ by less than a factor of two: then few vertices are candidates.
         classes = np.floor(0.5 * np.log2(self._squares)).astype(int)
-        self._classes = []
+        self._tree, self._classes = cKDTree(self.vertices), []
         for each in np.unique(classes):
             members = np.flatnonzero(classes == each)
             ends = np.concatenate([self.vertices[members], self.vertices[members + 1]])
@@ -73,10 +77,9 @@ class Polyline:
         for the smallest d known, are all that can hold the nearest place.
         """
         distances, segments = np.empty(len(points)), np.empty(len(points), dtype=np.intp)
-        vertices = cKDTree(self.vertices)
         for first in range(0, len(points), BLOCK):
             block = points[first : first + BLOCK]
-            vertex = vertices.query(block)[1]
+            vertex = self._tree.query(block)[1]
             segment = np.clip(vertex - 1, 0, len(self._ways) - 1)
             best = self._distance(block, segment)
             self._improve(block, np.arange(len(block)), np.clip(vertex, 0, len(self._ways) - 1), best, segment)
@@ -90,25 +93,33 @@ class Polyline:
             distances[first : first + BLOCK], segments[first : first + BLOCK] = best, segment
         return Nearest(distances, segments, self._place(points, segments))
 
-    def sags(self, near: Nearest) -> NDArray[np.float64]:
-        """How far the polyline leaves the straight line between the nearest places of two neighbouring points.
+    def bounds_between(self, points: NDArray[np.float64], near: Nearest) -> NDArray[np.float64]:
+        """What the distance does not exceed on the straight line from each point to the next [unit], shape (point-1,).
 
-        Returns
-        -------
-        ndarray, shape (point - 1,)
-            [unit]; infinite where many vertices lie between the two.
+        That line is no farther from the chord between the two nearest places than the larger distance, and the chord no
+        farther from the polyline than the vertices between the places are from it. Where the nearest place jumps to
+        another stretch, such as the next turn of a circle, the second place is looked for near the first.
         """
-        low = np.minimum(near.segments[:-1], near.segments[1:])
-        between = np.maximum(near.segments[:-1], near.segments[1:]) - low
-        begin, way = near.places[:-1], np.diff(near.places, axis=0)
+        before, after = near.segments[:-1], near.segments[1:].copy()
+        far, places = near.distances[1:].copy(), near.places[1:].copy()
+        jumps = np.flatnonzero(np.abs(after - before) > MOST_BETWEEN)
+        if jumps.size:
+            beside = np.add.outer(np.arange(-BESIDE, BESIDE + 1), before[jumps])
+            candidates = np.clip(beside, 0, len(self._ways) - 1)
+            found = np.stack([self._distance(points[1:][jumps], row) for row in candidates])
+            best = np.argmin(found, axis=0)
+            after[jumps], far[jumps] = candidates[best, np.arange(jumps.size)], found.min(axis=0)
+            places[jumps] = self._place(points[1:][jumps], after[jumps])
+        low, between = np.minimum(before, after), np.abs(after - before)
+        begin, way = near.places[:-1], places - near.places[:-1]
         square = np.maximum((way**2).sum(axis=1), np.finfo(float).tiny)
-        sag = np.where(between > MOST_BETWEEN, np.inf, 0.0)
-        for step in range(1, min(int(between.max(initial=0)), MOST_BETWEEN) + 1):
-            here = np.flatnonzero((between >= step) & (between <= MOST_BETWEEN))
+        sag = np.zeros(before.size)
+        for step in range(1, int(between.max(initial=0)) + 1):
+            here = np.flatnonzero(between >= step)
             away = self.vertices[low[here] + step] - begin[here]
             along = np.clip((away * way[here]).sum(axis=1) / square[here], 0.0, 1.0)
             sag[here] = np.maximum(sag[here], np.linalg.norm(away - along[:, None] * way[here], axis=1))
-        return sag
+        return np.maximum(near.distances[:-1], far) + sag
 
     def _improve(
         self,
