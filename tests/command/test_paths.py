@@ -100,7 +100,7 @@ def test_an_advanced_path_is_the_same_curve_earlier(delays: str) -> None:
 def test_a_circle_shrinks_to_the_transform(shaper: Shaper) -> None:
     """Radius R |S(i w)|: of the polygon between the samples, whose sides lie inside the circle by their sag."""
     radius, omega, dt = 0.05, 2.0 * math.pi * 1.25, 0.0005
-    t = np.arange(round(5.5 * 2.0 * math.pi / omega / dt)) * dt
+    t = np.arange(round(6.0 * 2.0 * math.pi / omega / dt)) * dt
     circle = radius * np.stack([np.cos(omega * t), np.sin(omega * t)])
     found = shaped_path(circle, shaper, dt)
     last = found.shaped[:, round(shaper.duration / dt) + 2 : t.size]
@@ -167,6 +167,16 @@ def test_the_mean_is_along_the_path_not_over_its_samples() -> None:
 def test_one_axis_and_many_samples() -> None:
     there_and_back = np.concatenate([np.linspace(0.0, 1.0, 50_000), np.linspace(1.0, 0.0, 50_000)])
     assert shaped_path([there_and_back], X, DT).contour_error().largest < 1e-15
+
+
+def test_a_point_to_which_all_segments_are_equally_near() -> None:
+    """And one beside it, whose nearest place is one among many nearly as near."""
+    angle = np.linspace(0.0, 2.0 * math.pi, 5_001)
+    arc = 3.0 * np.stack([np.cos(angle), np.sin(angle)])
+    path = np.concatenate([np.zeros((2, 200)), np.outer([1e-9, 0.0], np.ones(200))], axis=1)
+    found = contour_error(arc, path)
+    np.testing.assert_allclose(found.distances[:200], 3.0 * math.cos(math.pi / 5_000), rtol=1e-12)
+    assert found.distances[200:] == pytest.approx(3.0 - 1e-9, abs=1e-6)
 
 
 @pytest.mark.parametrize(

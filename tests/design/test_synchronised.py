@@ -55,6 +55,8 @@ def test_a_delay_survives_saving_convolution_the_grid_and_another_delay() -> Non
         assert placed.centroid == pytest.approx(later.centroid, abs=1e-3)
         assert placed.times[0] == 0.0 and placed.amplitudes[0] == 0.0
         assert np.allclose(placed.times / 0.001, np.rint(placed.times / 0.001))
+        delays, weights = placed.taps(0.001)  # what an export writes and reads again
+        assert Shaper(delays * 0.001, weights) == placed
     assert design.on_grid(later, 0.001, "exact").design.residual < 1e-12
     assert design.on_grid(later, 0.001).centroid == pytest.approx(later.centroid, abs=1e-15)
 

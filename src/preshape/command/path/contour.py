@@ -12,6 +12,12 @@ from preshape.errors import InputError
 
 __all__ = ["ContourError", "checked_path", "contour_error"]
 
+PARTS, MOST_LOOKS = (8, 64), 20_000
+"""Parts into which the way between two samples is divided for a closer look, and the most looks a time."""
+
+LOOSE = 1e-3
+"""A bound that exceeds the largest distance by less than this part is close enough."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ContourError:
@@ -82,8 +88,8 @@ def contour_error(commanded: ArrayLike, path: ArrayLike) -> ContourError:
     index = int(np.argmax(distances))
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
     pairs = np.stack([distances[:-1], distances[1:]])
-    # Between two samples also: a distance changes no faster than the path advances.
-    bounds = np.minimum(line.bounds_between(points, near), 0.5 * (pairs.sum(axis=0) + lengths))
+    bounds = line.bounds_between(points, near)
+    _tighten(bounds, line, points, float(distances[index]))
     # The integral of the square of what is straight between two samples.
     squares = (pairs[0] ** 2 + pairs[0] * pairs[1] + pairs[1] ** 2) / 3.0
     return ContourError(
@@ -95,6 +101,19 @@ def contour_error(commanded: ArrayLike, path: ArrayLike) -> ContourError:
         index=index,
         place=points[index].copy(),
     )
+
+
+def _tighten(bounds: NDArray[np.float64], line: Polyline, points: NDArray[np.float64], largest: float) -> None:
+    """Look more closely between those neighbours whose bound is far above what the samples reach, if they are few."""
+    for parts in PARTS:
+        loose = np.flatnonzero(bounds > largest * (1.0 + LOOSE))
+        if not 0 < loose.size * parts <= MOST_LOOKS:
+            return
+        shares = np.linspace(0.0, 1.0, parts + 1)[:, None]
+        looks = points[loose, None] * (1.0 - shares) + points[loose + 1, None] * shares
+        flat = looks.reshape(-1, points.shape[1])
+        closer = np.append(line.bounds_between(flat, line.nearest(flat)), 0.0).reshape(loose.size, parts + 1)
+        bounds[loose] = np.minimum(bounds[loose], closer[:, :parts].max(axis=1))
 
 
 def checked_path(name: str, path: ArrayLike) -> NDArray[np.float64]:

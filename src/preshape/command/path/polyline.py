@@ -12,6 +12,9 @@ __all__ = ["Nearest", "Polyline"]
 BLOCK = 4096
 """Points looked at together, so that memory stays small."""
 
+MOST_CANDIDATES = 1 << 18
+"""Segments looked at together: of a point in the middle of an arc, all are equally near."""
+
 ROUNDING = 1e-12
 
 MOST_BETWEEN = 32
@@ -85,11 +88,13 @@ class Polyline:
             self._improve(block, np.arange(len(block)), np.clip(vertex, 0, len(self._ways) - 1), best, segment)
             for tree, members, longest in self._classes:
                 reach = np.sqrt(best**2 + 0.25 * longest**2) * (1.0 + ROUNDING)
-                inside = tree.query_ball_point(block, reach)
-                counts = np.array([len(found) for found in inside])
-                if counts.any():
-                    which = np.concatenate([found for found in inside if found]).astype(np.intp) % members.size
-                    self._improve(block, np.repeat(np.arange(len(block)), counts), members[which], best, segment)
+                counts = np.asarray(tree.query_ball_point(block, reach, return_length=True))
+                parts = np.where(counts > 0, np.cumsum(counts) // MOST_CANDIDATES, -1)
+                for part in np.unique(parts[parts >= 0]):
+                    some = np.flatnonzero(parts == part)
+                    inside = tree.query_ball_point(block[some], reach[some])
+                    which = np.concatenate(list(inside)).astype(np.intp) % members.size
+                    self._improve(block, np.repeat(some, counts[some]), members[which], best, segment)
             distances[first : first + BLOCK], segments[first : first + BLOCK] = best, segment
         return Nearest(distances, segments, self._place(points, segments))
 
@@ -98,8 +103,16 @@ class Polyline:
 
         That line is no farther from the chord between the two nearest places than the larger distance, and the chord no
         farther from the polyline than the vertices between the places are from it. Where the nearest place jumps to
-        another stretch, such as the next turn of a circle, the second place is looked for near the first.
+        another stretch, such as the next turn of a circle, the one place is looked for near the other. And a distance
+        changes no faster than its point moves.
         """
+        backwards = Nearest(near.distances[::-1], near.segments[::-1], near.places[::-1])
+        either = np.minimum(self._onwards(points, near), self._onwards(points[::-1], backwards)[::-1])
+        moved = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        return np.asarray(np.minimum(either, 0.5 * (near.distances[:-1] + near.distances[1:] + moved)))
+
+    def _onwards(self, points: NDArray[np.float64], near: Nearest) -> NDArray[np.float64]:
+        """The bounds from chords, where a jump is followed beside the place of the first of two points."""
         before, after = near.segments[:-1], near.segments[1:].copy()
         far, places = near.distances[1:].copy(), near.places[1:].copy()
         jumps = np.flatnonzero(np.abs(after - before) > MOST_BETWEEN)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from preshape.checks import positive
-from preshape.command.known import acceleration_error, late_samples, samples_ahead
+from preshape.command.known.advanced import acceleration_error, late_samples, samples_ahead
 from preshape.command.path.contour import ContourError, checked_path, contour_error
 from preshape.errors import InputError
 from preshape.shaper import Shaper
