@@ -48,9 +48,13 @@ def console_lines() -> list[str]:
 def test_console_lines_are_accepted(line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """File names in the docs stand for the user's; here they are files of that kind."""
     monkeypatch.chdir(tmp_path)
-    for name, file in (("resonances_x.csv", "gantry_x.csv"), *((one, one) for one in ("machine.toml", "move.csv"))):
+    for name, file in (
+        ("resonances_x.csv", "gantry_x.csv"),
+        *((one, one) for one in ("machine.toml", "move.csv", "part.csv")),
+    ):
         (tmp_path / name).write_bytes((ROOT / "examples" / "data" / file).read_bytes())
-    preshape.design.zvd((8.7, 0.024)).save(tmp_path / "shaper.json")
+    for name, frequency in (("shaper.json", 8.7), ("x.json", 38.0), ("y.json", 61.0)):
+        preshape.design.zvd((frequency, 0.024)).save(tmp_path / name)
     result = CliRunner().invoke(command_line, shlex.split(line)[1:], catch_exceptions=False)
     assert result.exit_code == 0, result.output
 

@@ -15,7 +15,7 @@ from scipy.integrate import quad
 from preshape import Shaper, design
 from preshape.command import bang_bang, cycloidal, period_matched, posicast, pulse, s_curve, step, trapezoid
 from preshape.errors import InputError
-from preshape.plant import ModalPlant
+from preshape.plant import ModalPlant, Output, exact_motion
 from preshape.profile import Profile
 
 step_rows = st.lists(
@@ -278,3 +278,46 @@ def test_a_command_that_moves_on_slowly_is_told_from_rounding() -> None:
     assert not slow.ends_at_rest
     late = Profile([0.0, 1.0, 1000.0, 1001.0], [1.0, -1.0, -1.0, 1.0 + 1e-9], [3, 3, 3, 3])
     assert not late.ends_at_rest
+
+
+@given(step_rows)
+def test_nothing_exceeds_the_peak_and_something_reaches_it(rows: list[tuple[float, float, int]]) -> None:
+    """Against dense samples, which it may exceed only by what they can miss."""
+    moving = profile_of(rows)
+    end = moving.end_time + 1.0
+    profile = moving + Profile([end] * 4, [-float(moving(end, n)) for n in range(4)], range(4))
+    found = profile.peak()
+    looks = np.linspace(0.0, end, 4001)
+    looks = np.union1d(looks, np.concatenate([moving.times, np.append(moving.times, end) - 1e-12]))
+    sampled = float(np.abs(profile(looks)).max())
+    bend, slope = (float(np.abs(profile(looks, n)).max()) for n in (2, 1))
+    assert sampled <= found.value * (1.0 + 1e-12)
+    assert found.value <= sampled * (1.0 + 1e-12) + bend * (end / 4000.0) ** 2 / 8.0 + 2e-12 * slope
+    assert profile.integral().peak(1).value == pytest.approx(found.value, rel=1e-12)
+    if (profile.orders == 0).any():
+        assert profile.peak(1).value == profile.integral().peak(2).value == math.inf
+
+
+def test_the_peak_lies_between_samples_and_agrees_with_the_one_of_a_motion() -> None:
+    generator = np.random.default_rng(3)
+    for _ in range(40):
+        count = int(generator.integers(2, 9))
+        times, orders = np.sort(generator.uniform(0.0, 2.0, count)), generator.integers(2, 7, count)
+        raw = Profile(times, generator.normal(size=count), orders)
+        rest = Profile([2.5] * 7, [-float(raw(2.5, n)) for n in range(7)], range(7))
+        found = (raw + rest).peak()
+        looks = np.linspace(0.0, 2.5, 20001)
+        assert found.value == pytest.approx(np.abs(raw(looks)).max(), rel=1e-6)
+        assert abs(float((raw + rest)(found.time))) == pytest.approx(found.value, rel=1e-12) or found.time == 2.5
+        motion = exact_motion(None, raw + rest, outputs={"command": Output(command=1.0)}).peak("command")
+        assert found.value == pytest.approx(motion.value, rel=1e-12)
+
+
+def test_peaks_of_commands_in_closed_form() -> None:
+    move = s_curve(0.3, maximum_speed=0.5, maximum_acceleration=5.0, maximum_jerk=100.0, dt=0.001).profile
+    assert move is not None
+    assert [move.peak(k).value for k in (1, 2, 3)] == pytest.approx([0.5, 5.0, 100.0], rel=1e-12)
+    assert move.peak(4).value == math.inf and Profile([], [], []).peak().value == 0.0
+    assert Profile.steps([1.0], [1.0], order=1).peak().value == math.inf
+    assert Profile.steps([1.0], [1.0], order=1).peak(1).value == 1.0
+    assert Profile.steps([0.0, 1.0], [-3.0, 1.0]).peak() == Profile.steps([0.0], [3.0]).peak()

@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from preshape import Modes, design
+from preshape import Modes, design, identify
+from preshape.command.path import shaped_path
 from preshape.command.rest_to_rest import deflection_limiting
 from preshape.engine.basis import Basis
 from preshape.engine.polynomial import Polynomial
 from preshape.engine.projection import project
 from preshape.files import write_atomically
 from preshape.plant import FloatingOscillator, load_plant
-from preshape.report import comparison_figure, move_figure, simulation_figure
+from preshape.report import comparison_figure, contour_figure, move_figure, simulation_figure
 from preshape.report.figures import ACCENT, INK, MUTED, SECOND, SOFT, as_svg, new_figure, tidy
 from preshape.vibration import residual_vibration, tolerated_bands
 from preshape.workflow import compare, simulate_plant
@@ -193,9 +194,24 @@ def own_machine() -> Figure:
     return simulation_figure(simulate_plant(gantry, np.minimum(np.arange(250) * 1e-3, 0.2), 1e-3, shaper))
 
 
+def contours() -> Figure:
+    """The part of the examples, shaped in three ways."""
+    part = identify.read(HERE.parents[1] / "examples" / "data" / "part.csv")
+    assert isinstance(part, identify.TimeSeries)
+    dt, modes = 1.0 / part.sample_rate, [(38.0, 0.05), (61.0, 0.05)]
+    own = [design.zvd(mode) for mode in modes]
+    paths = {
+        "equal delays": shaped_path(part.values, own, dt),
+        "own delays": shaped_path(part.values, own, dt, delays="own"),
+        "one shaper": shaped_path(part.values, design.direct(modes), dt),
+    }
+    return contour_figure(paths, names=part.channels, unit=part.unit)
+
+
 FIGURES = {
     "certificate": certificate,
     "comparison": comparison,
+    "contours": contours,
     "growth": growth,
     "insensitivity": insensitivity,
     "own-machine": own_machine,

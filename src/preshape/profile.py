@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from preshape.checks import nonzero, not_negative, positive, whole_number
 from preshape.errors import InputError
+from preshape.kernel import Extremum, polynomial_extremum
 from preshape.profile_steps import HIGHEST_ORDER, checked_orders, checked_vector, merged_steps, segments_of
 from preshape.ruckig_steps import ruckig_steps
 from preshape.shaper import Shaper
@@ -182,6 +183,23 @@ class Profile:
         for k in range(taylor.shape[1] - 1, order, -1):
             value = rows[..., k - 1] + value * since / (k - order)
         return np.asarray(np.where(segment >= 0, value, 0.0))
+
+    def peak(self, derivative: int = 0) -> Extremum:
+        """The largest magnitude over all time of the command, or of a derivative of it: exact, not the largest sample.
+
+        Infinite where a step leaves an impulse in the derivative, and when it grows for ever.
+
+        Examples
+        --------
+        >>> move = Profile.steps([0.0, 1.0, 2.0], [1.0, -2.0, 1.0], order=2)
+        >>> move.peak(1).value, move.peak(1).time, move.peak(3).value
+        (1.0, 1.0, inf)
+        """
+        order = whole_number("derivative", derivative, 0, HIGHEST_ORDER)
+        if (self.orders < order).any():
+            return Extremum(np.inf, float(self.times[int(np.argmax(self.orders < order))]), np.inf)
+        starts, taylor = self._pieces
+        return polynomial_extremum(starts, taylor[:, order:])
 
     def derivative(self) -> Profile:
         """The derivative [unit/s]; InputError if the command itself steps, for then it holds impulses."""

@@ -159,7 +159,8 @@ class Shaper:
         """
         times = np.add.outer(self.times, other.times).ravel()
         amplitudes = np.multiply.outer(self.amplitudes, other.amplitudes).ravel()
-        times, amplitudes = merged_impulses(times, amplitudes, bool(self.boxes or other.boxes))
+        waits = 0.0 in (self.amplitudes[0], other.amplitudes[0])  # a leading impulse of 0 is a delay, and stays one
+        times, amplitudes = merged_impulses(times, amplitudes, waits or bool(self.boxes or other.boxes))
         if not (self.boxes or other.boxes):
             return Shaper(times, amplitudes / amplitudes.sum(), design)
         if self.boxes and other.boxes:

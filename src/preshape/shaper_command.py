@@ -39,7 +39,7 @@ def taps_of(
     weights = np.concatenate([part[1] for part in parts])
     unique, where = np.unique(delays, return_inverse=True)
     summed = np.bincount(where, weights)
-    keep = summed != 0.0
+    keep = (summed != 0.0) | (unique == 0)  # a first tap of weight 0 says that the shaper begins with a delay
     return unique[keep].astype(np.intp), summed[keep]
 
 

@@ -1,4 +1,5 @@
-"""Unshaped commands, one kind a file, each returned as a :class:`Command`."""
+"""Unshaped commands, one kind a file, each returned as a :class:`Command`; moves from rest to rest, commands known in
+advance and paths have folders of their own."""
 
 from preshape.command.band_limited import band_limited
 from preshape.command.bang_bang import bang_bang

@@ -16,6 +16,7 @@ from preshape.design.specified_deflection import sd_zv
 from preshape.design.specified_insensitivity import bands_of_sets, specified_insensitivity
 from preshape.design.specified_negative_amplitude import sna_zv
 from preshape.design.symmetric import symmetric_three_modes, symmetric_two_modes
+from preshape.design.synchronised import delayed, synchronised
 from preshape.design.unity_magnitude import um_ei, um_zv, um_zvd
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "bands_of_sets",
     "convolved",
     "deflection_limited",
+    "delayed",
     "direct",
     "ei",
     "ei_for_band",
@@ -45,6 +47,7 @@ __all__ = [
     "squashed",
     "symmetric_three_modes",
     "symmetric_two_modes",
+    "synchronised",
     "three_hump_ei",
     "two_hump_ei",
     "um_ei",

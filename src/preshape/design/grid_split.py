@@ -74,6 +74,7 @@ def exact_split(shaper: Shaper, dt: float) -> tuple[NDArray[np.float64], NDArray
             f"least every {fastest.damped_period / 2.0:.6g} s."
         )
     own, split = shaper.taps(dt)
+    own, split = own[split != 0.0], split[split != 0.0]  # a delay stays one: nothing is put at its beginning
     found = None
     for wider in range(WIDEST + 1):
         last = int(own[-1]) + max(0, wider - 1)  # first inside the duration

@@ -83,9 +83,7 @@ def on_grid(shaper: Shaper, dt: float, method: str = "linear") -> Shaper:
 
 def _linear(shaper: Shaper, dt: float) -> Shaper:
     delays, weights = shaper.taps(dt)
-    if delays[0] > 0:  # taps leave out a first impulse of amplitude 0, a shaper keeps it
-        delays, weights = np.insert(delays, 0, 0), np.insert(weights, 0, 0.0)
-    return Shaper(delays * np.float64(dt), weights / weights.sum())
+    return _used(delays.astype(float), weights, dt)
 
 
 def _nearest(shaper: Shaper, dt: float) -> Shaper:
@@ -109,10 +107,12 @@ def _optimised(shaper: Shaper, dt: float) -> Shaper:
 
 
 def _used(delays: NDArray[np.float64], weights: NDArray[np.float64], dt: float) -> Shaper:
-    """The shaper of those taps that are not zero."""
+    """The shaper of those taps that are not zero; a first one of zero says that it begins with a delay."""
     used = weights != 0.0
-    used[0] = True
-    return Shaper(delays[used] * np.float64(dt), weights[used] / weights.sum())
+    delays, weights = delays[used], weights[used]
+    if delays[0] > 0.0:
+        delays, weights = np.append(0.0, delays), np.append(0.0, weights)
+    return Shaper(delays * np.float64(dt), weights / weights.sum())
 
 
 METHODS: dict[str, Callable[[Shaper, float], Shaper]] = {

@@ -12,6 +12,7 @@ from preshape.kernel.driven_tail import free_phasors, rested, trend
 from preshape.kernel.exponential_sum import exponential_sum, exponential_sum_uniform
 from preshape.kernel.modal_scan import scanned_outputs, twice_summed
 from preshape.kernel.phi_functions import phi_functions
+from preshape.kernel.polynomial_extremum import polynomial_extremum
 from preshape.kernel.sparse_convolution import sparse_convolve
 from preshape.kernel.stream_reference import EngineLike, ReferenceEngine
 from preshape.kernel.stream_rings import Taps
@@ -38,6 +39,7 @@ __all__ = [
     "near_rates",
     "orthonormal_series",
     "phi_functions",
+    "polynomial_extremum",
     "rested",
     "scanned_outputs",
     "sparse_convolve",

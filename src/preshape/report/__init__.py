@@ -11,6 +11,7 @@ from preshape.report.comparison_table import (
     move_sentence,
     table_sentence,
 )
+from preshape.report.contour_figure import contour_figure
 from preshape.report.figures import as_svg, figure_bytes, figure_format
 from preshape.report.move_figure import move_figure
 from preshape.report.page import calibration_page, klipper_sentence
@@ -39,6 +40,7 @@ __all__ = [
     "comparison_sentences",
     "comparison_table",
     "exclusion_sentence",
+    "contour_figure",
     "figure_bytes",
     "figure_format",
     "klipper_sentence",

@@ -3,7 +3,15 @@
 from __future__ import annotations
 
 from preshape.papers.reproduction import Figure, Paper, Row
-from preshape.papers.singer import figures, robustness, sequences, shuttle_arm, shuttle_arm_figures, shuttle_moves
+from preshape.papers.singer import (
+    figures,
+    limits,
+    robustness,
+    sequences,
+    shuttle_arm,
+    shuttle_arm_figures,
+    shuttle_moves,
+)
 
 __all__ = ["SINGER"]
 
@@ -11,7 +19,7 @@ __all__ = ["SINGER"]
 def _contents() -> tuple[list[Row], list[Figure]]:
     moved = shuttle_moves.run_experiment()
     return (
-        [*sequences.rows(), *robustness.rows(), *shuttle_arm.rows(moved)],
+        [*sequences.rows(), *robustness.rows(), *limits.rows(), *shuttle_arm.rows(moved)],
         [*figures.figures(), *shuttle_arm_figures.figures(moved)],
     )
 
