@@ -51,7 +51,7 @@ class ShuttleArm:
         Gears, motors, and which imperfections are on.
     servo : Servo, optional
         None for free motors.
-    links : Links
+    empty : Links
         Geometry and masses, without payload.
 
     Raises
