@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +30,7 @@ def main() -> None:
     for name, command in (("unshaped", step), ("shaped", shaped)):
         found = {}
         for h in (1e-3, 5e-4):
-            run, seconds = once(lambda h=h, command=command: plant.simulate(command - ANGLE, DT, step=h))  # type: ignore[misc]
+            run, seconds = once(partial(plant.simulate, command - ANGLE, DT, step=h))
             found[h] = residual(run.outputs["left end"])
             print(
                 f"120 deg slew, {name}, step {1e3 * h:g} ms: {seconds:.2f} s for {DURATION:g} s, "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -78,7 +79,7 @@ def main() -> None:
     for count in PEER_COUNTS:
         modes = modes_of("log-spaced", count)
         ours = measured(modes)
-        duration, seconds = once(lambda modes=modes: interior_point_bisection(modes))  # type: ignore[misc]
+        duration, seconds = once(partial(interior_point_bisection, modes))
         found["peer"].append({"modes": count, "seconds": float(f"{seconds:.3g}"), "duration": round(duration, 9)})
         print(
             f"log-spaced, {count} modes: {ours['seconds']:.4f} s, {ours['duration']:.5f} s long; HiGHS interior-point "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -124,10 +125,10 @@ def main() -> None:
         shaper = design.specified_insensitivity(band, TOLERANCE)
         assert shaper.design.status == "optimal" and excess(shaper, [band]) <= 1e-6
         assert periods is None or shaper.duration <= periods + ROUNDING
-        seconds = best_of(lambda band=band: design.specified_insensitivity(band, TOLERANCE), runs=3)  # type: ignore[misc]
+        seconds = best_of(partial(design.specified_insensitivity, band, TOLERANCE), runs=3)
         what = f"I = {width:g}: {shaper.duration:.6f} periods, {len(shaper)} impulses, proved (notes: {periods})"
         if width in COMPARED:
-            (peer, above), longer = once(lambda width=width: sampled(width))  # type: ignore[misc]
+            (peer, above), longer = once(partial(sampled, width))
             other = f"linear programmes on samples ({peer:.4f} periods, {100.0 * above:.2f} % over the tolerance)"
             row(what, seconds, other, longer, "claim: under 50 ms")
         else:

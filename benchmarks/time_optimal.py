@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,13 +36,9 @@ def main() -> None:
         asked = limits or None
         move = time_optimal(body, distance, maximum_force=1.0, deflection_limits=asked)
         assert move.gap is not None and move.gap < 1e-3
-        seconds = best_of(
-            lambda body=body, distance=distance, asked=asked: time_optimal(  # type: ignore[misc]
-                body, distance, maximum_force=1.0, deflection_limits=asked
-            ),
-            runs=3,
-        )
-        grid, theirs = once(lambda body=body, distance=distance, limits=limits: bisection(body, distance, limits))  # type: ignore[misc]
+        ours = partial(time_optimal, body, distance, maximum_force=1.0, deflection_limits=asked)
+        seconds = best_of(ours, runs=3)
+        grid, theirs = once(partial(bisection, body, distance, limits))
         difference = 100.0 * (grid / move.duration - 1.0)
         assert difference > -0.2
         row(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from timing import best_of, once, row
@@ -21,8 +22,8 @@ def compare(what: str, before: Shaper, factors: Sequence[Sequence[float]]) -> No
     warm, cold, searched = [], [], 0
     for each in factors:
         modes = Modes([(f * factor, z) for (f, z), factor in zip(MODES, each, strict=True)])
-        shaper, seconds = once(lambda modes=modes: design.direct(modes, near=before))  # type: ignore[misc]
-        again, longer = once(lambda modes=modes: design.direct(modes))  # type: ignore[misc]
+        shaper, seconds = once(partial(design.direct, modes, near=before))
+        again, longer = once(partial(design.direct, modes))
         assert shaper.design.status == "optimal" and abs(shaper.duration / again.duration - 1.0) < 1e-9
         warm.append(seconds)
         cold.append(longer)

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from preshape.cli.main import preshape
+from preshape.cli.main import main, preshape
+from preshape.command import rest_to_rest
 from preshape.errors import InputError
 from preshape.plant import FloatingOscillator
 from preshape.profile import Profile
@@ -47,6 +48,28 @@ def test_any_modes_and_a_figure(tmp_path: Path) -> None:
     result = run(*several, "--distance", "-10", "--force", "1", "--figure", str(figure))
     assert "-10 m in 9.00098 s" in result.output
     assert figure.read_text().startswith("<svg")
+
+
+@pytest.mark.parametrize(("suffix", "signature"), [(".png", b"\x89PNG\r\n\x1a\n"), (".pdf", b"%PDF-")])
+def test_the_figure_is_of_the_kind_that_its_name_says(suffix: str, signature: bytes, tmp_path: Path) -> None:
+    figure = tmp_path / f"move{suffix}"
+    result = run(*PLANT, "--command", "bang-bang", "--figure", str(figure))
+    assert f"Figure: {figure}" in result.output
+    assert figure.read_bytes().startswith(signature)
+
+
+def test_a_kind_of_figure_that_there_is_not_is_refused_before_anything_is_computed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def computed(*_: object, **__: object) -> None:
+        raise AssertionError("the command was computed, and then could not be drawn")
+
+    monkeypatch.setattr(rest_to_rest, "time_optimal", computed)
+    figure = tmp_path / "move.gif"
+    with pytest.raises(SystemExit) as ended:
+        main(["move", *PLANT, "--figure", str(figure)])
+    assert ended.value.code == 2 and "end it in .svg, .png or .pdf" in capsys.readouterr().err
+    assert not figure.exists()
 
 
 @pytest.mark.parametrize(

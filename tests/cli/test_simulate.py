@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -60,6 +61,34 @@ def test_a_finer_step_and_named_modes_and_a_plant_by_name(
         capsys, "mace-linear", "--shaper", zv, "--command", str(pulse), "--sample-rate", "2000", "--rest", "0.5"
     )
     assert code == 0 and "payload" in text
+
+
+def _by_name(name: str, rows: int, tmp_path: Path) -> list[str]:
+    """Arguments that move the first input of a plant that comes along by 0.01, at once."""
+    plant = load_plant(name)
+    move = tmp_path / "move.csv"
+    row = ",".join(["0.01"] + ["0"] * (len(plant.inputs) - 1))
+    move.write_text(f"time,{','.join(plant.inputs)}\n" + "".join(f"{0.002 * k},{row}\n" for k in range(rows)))
+    zv = design.zv(plant.modes()[0]).save(tmp_path / "zv.json")
+    return [name, "--shaper", str(zv), "--command", str(move)]
+
+
+@pytest.mark.parametrize(("name", "output"), [("mace", "left sensor"), ("shuttle-arm", "end point y")])
+def test_the_test_beds_are_simulated_by_name(
+    name: str, output: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if name == "mace":
+        pytest.importorskip("exudyn", exc_type=ImportError)
+    code, text, err = run(capsys, *_by_name(name, 20, tmp_path))
+    assert code == 0 and err == "" and output in text
+
+
+def test_a_test_bed_whose_package_is_missing_says_what_to_install(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "exudyn", None)
+    code, out, err = run(capsys, *_by_name("mace", 20, tmp_path))
+    assert code == 2 and out == "" and err.count("\n") == 1 and "pip install 'preshape[plants]'" in err
 
 
 def test_columns_are_told_by_their_names(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from importlib.util import find_spec
 
 import numpy as np
+import pytest
 
 from preshape.plant import (
     FlexibleBody,
@@ -15,11 +17,14 @@ from preshape.plant import (
     ModalPlant,
     PositionedMass,
     SampledPlant,
+    ShuttleArm,
     SimulatedPlant,
     SimulatorPlant,
     from_matrices,
     linear_mace,
 )
+from preshape.plant.mace import CALIBRATED_GAINS, Mace
+from preshape.plant.shuttle_arm import CALIBRATED_JOINTS
 
 MASS = np.diag([2.0, 1.0, 0.5])
 STIFFNESS = np.array([[900.0, -400.0, 0.0], [-400.0, 600.0, -200.0], [0.0, -200.0, 200.0]])
@@ -44,6 +49,14 @@ class Simulated:
         Where outputs settle under a constant unit of the first input, for plants that do.
     tolerance : float
         Of its simulation, relative.
+    rest : mapping of str to float
+        Where outputs are at rest, for those that are not at 0.
+    still : float
+        How far rounding may move an output of a plant at rest, in its unit.
+    spared : mapping of str to str
+        The tests of laws that do not hold for it, each with the reason, which is shown where it is skipped.
+    needs : str
+        The package that it is simulated with, if it is no part of all installations.
     """
 
     make: Callable[[], SimulatedPlant]
@@ -51,6 +64,22 @@ class Simulated:
     linear: bool = True
     static: dict[str, float] | None = None
     tolerance: float = 1e-11
+    rest: dict[str, float] = field(default_factory=dict)
+    still: float = 0.0
+    spared: dict[str, str] = field(default_factory=dict)
+    needs: str = ""
+
+
+def those(law: str, *, which: Callable[[Simulated], bool] = lambda one: True) -> list:
+    """The names of the plants that a law's test runs on; those that are spared are skipped with their reason."""
+    found = []
+    for name, one in PLANTS.items():
+        if not which(one):
+            continue
+        missing = f"{one.needs} is not installed" if one.needs and find_spec(one.needs) is None else ""
+        reason = one.spared.get(law, missing)
+        found.append(pytest.param(name, marks=pytest.mark.skip(reason=reason) if reason else ()))
+    return found
 
 
 def two_inputs() -> LinearPlant:
@@ -89,6 +118,14 @@ def statically(place: int) -> dict[str, float]:
     bent = np.linalg.solve(STIFFNESS, np.eye(3)[place])
     return {name: float(bent[at]) for name, at in ENDS.items()}
 
+
+def reach() -> dict[str, float]:
+    """Where the end point of the stretched arm is."""
+    return {f"end point {axis}": float(at) for axis, at in zip("xyz", ShuttleArm().end_point(), strict=True)}
+
+
+SUDDEN = "test_even_a_step_at_once_has_the_same_effect_later"
+LATER = "test_a_later_command_has_a_later_effect"
 
 PLANTS: dict[str, Simulated] = {
     "linear MACE": Simulated(linear_mace, dt=1e-3, tolerance=1e-9),
@@ -130,5 +167,27 @@ PLANTS: dict[str, Simulated] = {
     ),
     "sampled modal plant": Simulated(
         lambda: SampledPlant(ModalPlant([(1.0, 0.1), (2.5, 0.1)]), "position", "m"), static={"output": 1.0}
+    ),
+    "MACE": Simulated(
+        lambda: Mace(CALIBRATED_GAINS, elements=1),
+        linear=False,
+        static={"payload angle": 1.0},
+        tolerance=1e-10,
+        still=1e-8,
+        spared={SUDDEN: "a step at time 0 acts at once, a later one over a step: the same to second order"},
+        needs="exudyn",
+    ),
+    "Shuttle arm": Simulated(
+        ShuttleArm,
+        linear=False,
+        rest=reach(),
+        spared=dict.fromkeys((SUDDEN, LATER), "its joints look at the command at moments of their own, by chance"),
+    ),
+    "Shuttle arm, linear joints": Simulated(
+        lambda: ShuttleArm(joints=CALIBRATED_JOINTS.only()),
+        linear=False,  # the links turn far
+        rest=reach(),
+        tolerance=1e-5,  # the mass matrix is renewed every 40 ms, at times that the command does not know
+        spared={SUDDEN: "the leapfrog takes a step at time 0 half a step of the simulation later than others"},
     ),
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,10 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
+from preshape.errors import InputError
 from preshape.report import (
     Comparison,
+    LeftOut,
     as_svg,
     comparison_figure,
     comparison_sentences,
@@ -66,6 +69,16 @@ def test_sentences_and_table_say_what_the_numbers_say() -> None:
     row = table.rows[[one.name for one in result.contenders].index("trapezoid")]
     assert row[1] == "0.7" and float(row[3]) == pytest.approx(1e3 * result["trapezoid"].residual, rel=5e-3)
     assert "never" in {row[2] for row in comparison_table(MOVES["fast"]).rows}
+
+
+def test_without_contenders_there_is_a_sentence_instead_of_a_figure() -> None:
+    left_out = (LeftOut("trapezoid", "its acceleration jumps"), LeftOut("ZV", "it is too long"))
+    nothing = replace(MOVES["one"], contenders=(), left_out=left_out)
+    with pytest.raises(InputError, match=r"nothing to draw: all 2 are left out.*; allow more"):
+        comparison_figure(nothing)
+    with pytest.raises(InputError, match="none settles first"):
+        _ = nothing.first_to_settle
+    assert comparison_sentences(nothing)[0] == "No command can make this move." and not comparison_table(nothing).rows
 
 
 def test_the_figure_of_the_how_to_is_in_the_documentation() -> None:

@@ -66,7 +66,7 @@ class TwoMasses(click.ParamType[FloatingOscillator]):
 @click.option("--on-off", is_flag=True, help="The actuator has no levels between (time-optimal).")
 @click.option("--out", type=click.Path(path_type=Path), metavar="FORCE.csv", help="Write the sampled force, with --dt.")
 @click.option("--dt", type=float, metavar="S", help="Sample interval [s].")
-@click.option("--figure", type=click.Path(path_type=Path), metavar="MOVE.svg", help="Draw force, deflection and way.")
+@click.option("--figure", type=click.Path(path_type=Path), metavar="FIGURE", help="Draw the move: .svg, .png or .pdf.")
 def command(out: Path | None, dt: float | None, figure: Path | None, **asked: Any) -> None:
     """Move a flexible body from rest to rest with a force, without vibration and within a deflection.
 
@@ -77,17 +77,22 @@ def command(out: Path | None, dt: float | None, figure: Path | None, **asked: An
     """
     from preshape.cli.screens import console
     from preshape.files import write_atomically
-    from preshape.report import as_svg, move_figure
+    from preshape.report import figure_bytes, figure_format, move_figure
     from preshape.workflow import save_force
 
     if (out is None) != (dt is None):
         raise InputError("--out and --dt go together: the file, and the sample interval [s] of its rows.")
-    move = _made(**asked)
+    drawn_as = None if figure is None else figure_format(figure)
+    progress = console(stderr=True)
+    with progress.status("computing the command ..."):
+        move = _made(**asked)
     console().print(str(move))
     if out is not None and dt is not None:
         click.echo(f"Force: {save_force(move, out, dt)}")
-    if figure is not None:
-        click.echo(f"Figure: {write_atomically(figure, as_svg(move_figure(move)))}")
+    if figure is not None and drawn_as is not None:
+        with progress.status("drawing ..."):
+            drawn = figure_bytes(move_figure(move), drawn_as)
+        click.echo(f"Figure: {write_atomically(figure, drawn)}")
 
 
 def _made(

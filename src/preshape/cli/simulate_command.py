@@ -46,7 +46,7 @@ def command(
     """Simulate PLANT under a command, unshaped beside shaped, and measure what is left of the vibration.
 
     PLANT is a file (.json or .toml) with mass, damping and stiffness matrices, with A, B, C, D, or with modes; or the
-    name of a plant that comes along, such as mace-linear.
+    name of a plant that comes along: mace-linear, mace or shuttle-arm.
 
     \b
     preshape simulate machine.toml --shaper shaper.json --command move.csv --figure simulation.svg

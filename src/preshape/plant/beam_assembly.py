@@ -12,9 +12,31 @@ from numpy.typing import NDArray
 
 from preshape.plant.beam_parts import HingedPayload, Lump
 
-__all__ = ["cubics", "mass_matrix", "rigid_motions", "strain_matrix", "supported"]
+__all__ = ["cubics", "element_mass", "mass_matrix", "rigid_motions", "strain_matrix", "supported"]
 
 Vector = NDArray[np.float64]
+
+
+def element_mass(length: float, density: float) -> Vector:
+    """The consistent mass of an element, shape (4, 4), of displacement and slope at its first node, then its second.
+
+    Parameters
+    ----------
+    length : float
+        [m].
+    density : float
+        Mass per length [kg/m].
+
+    Examples
+    --------
+    >>> unit = element_mass(2.0, 3.0)
+    >>> float(np.array([1.0, 0.0, 1.0, 0.0]) @ unit @ [1.0, 0.0, 1.0, 0.0])
+    6.0
+    """
+    h, hh = length, length * length
+    rows = [[156.0, 22 * h, 54.0, -13 * h], [22 * h, 4 * hh, 13 * h, -3 * hh]]
+    rows += [[54.0, 13 * h, 156.0, -22 * h], [-13 * h, -3 * hh, -22 * h, 4 * hh]]
+    return density * length / 420.0 * np.array(rows)
 
 
 def mass_matrix(nodes: Vector, densities: Vector, lumps: Sequence[Lump], payloads: Sequence[HingedPayload]) -> Vector:
@@ -22,10 +44,7 @@ def mass_matrix(nodes: Vector, densities: Vector, lumps: Sequence[Lump], payload
     base = 2 * nodes.size
     total = np.zeros((base + len(payloads),) * 2)
     for k, (h, density) in enumerate(zip(np.diff(nodes), densities, strict=True)):
-        # The consistent mass of a cubic; displacement, h slope, displacement, h slope.
-        local = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]) / 420.0
-        size = np.array([1.0, h, 1.0, h])
-        total[2 * k : 2 * k + 4, 2 * k : 2 * k + 4] += density * h * local * np.outer(size, size)
+        total[2 * k : 2 * k + 4, 2 * k : 2 * k + 4] += element_mass(h, density)
     for lump in lumps:
         at = 2 * _node(nodes, lump.position)
         total[at, at] += lump.mass

@@ -90,6 +90,7 @@ def followed(
     def within(t: float, x: Array) -> float:
         return RUN_AWAY - float(np.max(np.abs(x) / scale))
 
+    # solve_ivp reads whether an event ends the integration from an attribute of the function, which has no type.
     within.terminal = True  # type: ignore[attr-defined]
     try:
         with np.errstate(all="ignore"):

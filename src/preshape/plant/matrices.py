@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -108,12 +109,30 @@ def from_matrices(
     if ratio is not None:
         damped = np.diag(2.0 * ratio * omega)
     _check_damping(damped)
-    if _apart(damped, omega):
-        return _structure(omega, shapes, damped, push, looks, units, input_name, input_unit)
-    return _state_space(omega, shapes, damped, push, looks, units, input_name, input_unit)
+    modal, places = _Modal(omega, shapes, damped), _Places(push, looks, {input_name: input_unit}, units)
+    return _structure(modal, places) if _apart(modal) else _state_space(modal, places)
 
 
 Matrix: TypeAlias = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class _Modal:
+    """Undamped modes: frequencies [rad/s], 0 for rigid bodies, shapes of unit mass as columns, and their damping."""
+
+    omega: Matrix
+    shapes: Matrix
+    damped: Matrix
+
+
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """What the input pushes and what each output looks at, in coordinates; their units by name."""
+
+    push: Matrix
+    looks: Mapping[str, Matrix]
+    inputs: Mapping[str, str]
+    outputs: Mapping[str, str]
 
 
 def _row(name: str, place: Place, count: int) -> Matrix:
@@ -168,8 +187,9 @@ def _check_damping(damped: Matrix) -> None:
         )
 
 
-def _apart(damped: Matrix, omega: Matrix) -> bool:
+def _apart(modal: _Modal) -> bool:
     """Whether every mode vibrates by itself, and rigid bodies coast."""
+    damped, omega = modal.damped, modal.omega
     own = np.maximum(np.diagonal(damped), 0.0)
     coupled = np.abs(damped - np.diag(np.diagonal(damped)))
     limit = COUPLING * np.sqrt(np.outer(own, own)) + len(omega) * np.finfo(float).eps * own.max(initial=0.0)
@@ -178,20 +198,12 @@ def _apart(damped: Matrix, omega: Matrix) -> bool:
     return bool(flexible.any() and coasts and (coupled <= limit).all() and (own < 2.0 * omega)[flexible].all())
 
 
-def _structure(
-    omega: Matrix,
-    shapes: Matrix,
-    damped: Matrix,
-    push: Matrix,
-    looks: Mapping[str, Matrix],
-    units: Mapping[str, str],
-    name: str,
-    unit: str,
-) -> FlexibleStructure:
+def _structure(modal: _Modal, places: _Places) -> FlexibleStructure:
+    omega, shapes, push = modal.omega, modal.shapes, places.push
     rigid = shapes[:, omega == 0.0]
     modes: list[Mode] = []
     columns: list[Matrix] = []
-    for w, shape, own in zip(omega, shapes.T, np.diagonal(damped), strict=True):
+    for w, shape, own in zip(omega, shapes.T, np.diagonal(modal.damped), strict=True):
         if w == 0.0:
             continue
         mode = Mode(w / (2.0 * np.pi), max(own, 0.0) / (2.0 * w))
@@ -206,9 +218,10 @@ def _structure(
     kept = np.array(columns).T
     pushed = rigid.T @ push
     seen = {
-        key: Output(tuple((row @ kept).tolist()), rigid=float((row @ rigid) @ pushed), unit=units[key])
-        for key, row in looks.items()
+        key: Output(tuple((row @ kept).tolist()), rigid=float((row @ rigid) @ pushed), unit=places.outputs[key])
+        for key, row in places.looks.items()
     }
+    ((name, unit),) = places.inputs.items()
     return FlexibleStructure(modes, kept.T @ push, seen, input=name, unit=unit)
 
 
@@ -217,20 +230,12 @@ def _same(first: Mode, second: Mode) -> bool:
     return near and abs(second.damping - first.damping) <= 2.0 * EQUAL_MODES
 
 
-def _state_space(
-    omega: Matrix,
-    shapes: Matrix,
-    damped: Matrix,
-    push: Matrix,
-    looks: Mapping[str, Matrix],
-    units: Mapping[str, str],
-    name: str,
-    unit: str,
-) -> LinearPlant:
+def _state_space(modal: _Modal, places: _Places) -> LinearPlant:
     """States w q and q' of the undamped modes, q and q' of rigid ones: of one size, and 0 where it must be."""
+    omega, shapes = modal.omega, modal.shapes
     scale = np.where(omega > 0.0, omega, 1.0)
     zero = np.zeros((omega.size, omega.size))
-    a = np.block([[zero, np.diag(scale)], [-np.diag(omega), -damped]])
-    b = np.concatenate([np.zeros(omega.size), shapes.T @ push])
-    c = np.array([np.concatenate([(row @ shapes) / scale, np.zeros(omega.size)]) for row in looks.values()])
-    return LinearPlant(a, b, c, inputs={name: unit}, outputs=units)
+    a = np.block([[zero, np.diag(scale)], [-np.diag(omega), -modal.damped]])
+    b = np.concatenate([np.zeros(omega.size), shapes.T @ places.push])
+    c = np.array([np.concatenate([(row @ shapes) / scale, np.zeros(omega.size)]) for row in places.looks.values()])
+    return LinearPlant(a, b, c, inputs=places.inputs, outputs=places.outputs)

@@ -98,6 +98,7 @@ def oscillation(a: Real, accuracy: float) -> Oscillation:
     if zeros == states:
         nothing = np.zeros((states, 0), dtype=complex)
         return Oscillation(np.zeros(0, dtype=complex), nothing, nothing, zeros)
+    # scipy-stubs has two arrays for left and right asked together, and real vectors too; SciPy returns these three.
     found: tuple[Complex, Complex, Complex] = eig(turned[zeros:, zeros:], left=True, right=True)  # type: ignore[assignment]
     poles, left, right = found
     # A right vector of the whole has a part among the zeros, (pole - nilpotent)^-1 of the coupling; a left one not.

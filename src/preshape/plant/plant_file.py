@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import stat
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +17,11 @@ import msgspec
 from preshape.errors import InputError
 from preshape.plant.exact import Output
 from preshape.plant.flexible_structure import FlexibleStructure
+from preshape.plant.mace import CALIBRATED_GAINS, Mace
 from preshape.plant.mace_linear import linear_mace
 from preshape.plant.matrices import Place, from_matrices
 from preshape.plant.protocol import SimulatedPlant
+from preshape.plant.shuttle_arm import ShuttleArm
 from preshape.plant.state_space import LinearPlant
 
 __all__ = ["BUILT_IN", "PLANT_SCHEMA", "load_plant"]
@@ -28,7 +31,11 @@ PLANT_SCHEMA = "preshape/plant/1"
 LARGEST_FILE = 100_000_000
 """Bytes; three full matrices of a thousand coordinates, as many as are allowed, take 60 MB with all digits."""
 
-BUILT_IN = {"mace-linear": linear_mace}
+BUILT_IN: dict[str, Callable[[], SimulatedPlant]] = {
+    "mace-linear": linear_mace,
+    "mace": lambda: Mace(CALIBRATED_GAINS),
+    "shuttle-arm": ShuttleArm,
+}
 """Plants that come along, by the name that stands in for a file."""
 
 Matrix = list[list[float]]
@@ -108,6 +115,10 @@ def load_plant(plant: str | os.PathLike[str]) -> SimulatedPlant:
     ------
     InputError
         If the file cannot be read, or does not describe a plant; one sentence says where and why.
+
+    Notes
+    -----
+    "mace" needs Exudyn to be simulated, and its `simulate` says so where that is missing; its modes do not.
 
     Examples
     --------

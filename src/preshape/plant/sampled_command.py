@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from preshape.checks import positive
 from preshape.errors import InputError
 
-__all__ = ["Hold", "checked_hold", "command_rows", "named"]
+__all__ = ["Hold", "checked_hold", "command_rows", "named", "steps_of"]
 
 Hold: TypeAlias = Literal["zero", "linear"]
 """A command between samples: held, as a controller's output is, or the straight line to the next sample."""
+
+FITS = 1e-9
+"""A sample interval is a whole number of simulation steps to this relative accuracy."""
 
 
 def command_rows(command: ArrayLike, inputs: Mapping[str, str]) -> NDArray[np.float64]:
@@ -48,6 +53,43 @@ def checked_hold(hold: str) -> bool:
     if hold not in ("zero", "linear"):
         raise InputError(f"hold is {hold!r}: give 'zero' or 'linear'.")
     return hold == "linear"
+
+
+def steps_of(dt: float, step: float | None, largest: float) -> tuple[int, float]:
+    """How many steps of the simulation a sample takes, and the step [s]: the one asked for, or up to the largest.
+
+    Parameters
+    ----------
+    dt : float
+        Sample interval [s].
+    step : float or None
+        [s]; None for the longest up to `largest`, of which `dt` is a whole number.
+    largest : float
+        [s].
+
+    Raises
+    ------
+    InputError
+        If `step` is not above 0, or `dt` is not a whole number of it.
+
+    Examples
+    --------
+    >>> steps_of(0.01, None, 0.004)
+    (3, 0.0033333333333333335)
+    >>> steps_of(0.01, 0.002, 0.004)
+    (5, 0.002)
+    """
+    if step is None:
+        ratio = math.ceil(dt / largest * (1.0 - FITS))
+        return ratio, dt / ratio
+    fine = positive("step", step, "s")
+    ratio = round(dt / fine)
+    if ratio < 1 or abs(ratio * fine - dt) > FITS * dt:
+        raise InputError(
+            f"the command's sample time {dt:g} s is {dt / fine:.6g} simulation steps of {fine:g} s: "
+            "give a step that it is a whole number of, or none."
+        )
+    return ratio, dt / ratio
 
 
 def named(kind: str, given: Mapping[str, str] | None, count: int) -> dict[str, str]:

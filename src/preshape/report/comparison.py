@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from preshape.errors import InputError
 from preshape.mode import Modes
 from preshape.profile import Profile
 
@@ -134,7 +135,9 @@ class Comparison:
 
     @property
     def first_to_settle(self) -> Contender:
-        """The contender that has settled first, if the modes are as modelled."""
+        """The contender that has settled first, if the modes are as modelled; InputError when there is none."""
+        if not self.contenders:
+            raise InputError("no command can make this move, so none settles first: see left_out for the reasons.")
         return self.contenders[0]
 
     def robust(self, contender: Contender) -> bool:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from preshape.errors import InputError
 from preshape.report.comparison import Comparison, Contender, Kind
 from preshape.report.comparison_table import LengthUnit, comparison_sentences, length_unit, move_sentence
 from preshape.report.figures import ACCENT, INK, MUTED, SECOND, new_figure, tidy
@@ -56,7 +57,17 @@ def comparison_figure(comparison: Comparison) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        If the comparison has no contenders.
     """
+    if not comparison.contenders:
+        raise InputError(
+            f"no command can make this move, so there is nothing to draw: all {len(comparison.left_out)} are left out, "
+            "with their reasons in the table without a figure; allow more."
+        )
     figure = new_figure(12.5, 6.4)
     left, right = figure.subplots(1, 2, width_ratios=[1.35, 1.0])
     shown = length_unit(comparison)

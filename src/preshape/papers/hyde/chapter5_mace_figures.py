@@ -114,13 +114,13 @@ def _detail(number: str, caption: str, slew: Slew) -> Figure:
     return Figure(
         number,
         f"{caption} [slow motion taken out]",
-        lambda: _drawn(slew, f"{slew.name.capitalize()}: {1e6 * slew.residual:.2f} um left after 6 s", DETAIL[0]),
+        lambda: _drawn(slew, f"{slew.name.capitalize()}: {1e6 * slew.residual:.2f} µm left after 6 s", DETAIL[0]),
     )
 
 
 def _drawn(slew: Slew, title: str, start: float) -> Drawing:
     times, values = _from(slew, start)
-    scale, unit = (1e6, "um") if start else (1e3, "mm")
+    scale, unit = (1e6, "µm") if start else (1e3, "mm")
     if start:  # a detail: the vibration about its mean over a period
         count = round(PERIOD / DT)
         mean = np.convolve(values, np.full(count, 1.0 / count), mode="valid")

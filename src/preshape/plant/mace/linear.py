@@ -1,8 +1,8 @@
 """MACE linearised about a payload angle: matrices from Bernoulli-Euler elements, and the poles of the loop.
 
 Small motions of the bus (along it, across it, and its slope at every node) and of the right payload's angle. This is
-written out by hand: it calibrates the model, gives its modes, and is checked against the multibody model, of which it
-knows nothing.
+written out by hand, from the elements of :mod:`preshape.plant.beam_assembly`: it calibrates the model, gives its
+modes, and is checked against the multibody model, of which it knows nothing.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from preshape.plant.beam_assembly import cubics, element_mass
 from preshape.plant.mace.structure import LENGTH, NODE_INERTIA, SENSOR, MaceGains, MaceStructure
 
 __all__ = ["Linearised", "bending_damping", "fundamental_swing", "lumps", "oscillations", "sensor_weights"]
@@ -167,11 +168,8 @@ def fundamental_swing(model: Linearised, elements: int, torque: float, above: fl
 
 def sensor_weights(elements: int) -> tuple[int, Matrix]:
     """The element the left sensor is on, and how the coordinates across and slope of its two nodes make its motion."""
-    a = LENGTH / (4 * elements)
-    element = min(int(SENSOR / a), 4 * elements - 1)
-    u = SENSOR / a - element
-    cubic = [1.0 - 3.0 * u**2 + 2.0 * u**3, a * u * (1.0 - u) ** 2, u**2 * (3.0 - 2.0 * u), a * u**2 * (u - 1.0)]
-    return element, np.array(cubic)
+    element, displacement, _ = cubics(np.linspace(0.0, LENGTH, 4 * elements + 1), SENSOR)
+    return element, displacement
 
 
 def bending_damping(structure: MaceStructure, elements: int, ratio: float) -> Matrix:
@@ -221,12 +219,7 @@ def _add_element(mass: Matrix, stiffness: Matrix, s: MaceStructure, k: int, leng
         [-12, -6 * a, 12, -6 * a],
         [6 * a, 2 * a * a, -6 * a, 4 * a * a],
     )
-    mass[np.ix_(bending, bending)] += (s.bus_density * a / 420.0) * _matrix(
-        [156, 22 * a, 54, -13 * a],
-        [22 * a, 4 * a * a, 13 * a, -3 * a * a],
-        [54, 13 * a, 156, -22 * a],
-        [-13 * a, -3 * a * a, -22 * a, 4 * a * a],
-    )
+    mass[np.ix_(bending, bending)] += element_mass(a, s.bus_density)
     stiffness[np.ix_(axial, axial)] += (s.axial_stiffness / a) * _matrix([1, -1], [-1, 1])
     mass[np.ix_(axial, axial)] += (s.bus_density * a / 6.0) * _matrix([2, 1], [1, 2])
 

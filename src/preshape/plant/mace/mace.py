@@ -18,16 +18,13 @@ from preshape.plant.mace.linear import Linearised, oscillations
 from preshape.plant.mace.multibody import MaceBody
 from preshape.plant.mace.recording import OUTPUTS, Recording
 from preshape.plant.mace.structure import CALIBRATED, GimbalLimits, MaceGains, MaceStructure
-from preshape.plant.sampled_command import command_rows
+from preshape.plant.sampled_command import command_rows, steps_of
 from preshape.plant.simulation import Simulation
 
 __all__ = ["LARGEST_STEP", "Mace"]
 
 LARGEST_STEP = 1e-3
 """The simulation's step unless given [s]: halving it changes the residual of a slew by less than 0.1 %."""
-
-FITS = 1e-9
-"""A sample interval is a whole number of steps to this relative accuracy."""
 
 LIGHT = 0.15
 """What is damped more than this does not vibrate: the loops' own slow motions."""
@@ -167,7 +164,7 @@ class Mace:
             If the motion leaves what the model can say, as with unstable gains; what was computed is in `partial`.
         """
         rows = self._rows(command)
-        ratio, fine = _steps(positive("dt", dt, "s"), step)
+        ratio, fine = steps_of(positive("dt", dt, "s"), step, LARGEST_STEP)
         count = rows.shape[1]
         body = MaceBody(self.structure, self.angle, elements=self.elements, damping=self.damping, gains=self.gains)
         control = Control(self, rows, ratio, fine, progress)
@@ -213,18 +210,3 @@ def _angle(value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | np.floating) or not math.isfinite(value):
         raise InputError(f"the payload's angle is {value!r}: give a finite number of radians.")
     return float(value)
-
-
-def _steps(dt: float, step: float | None) -> tuple[int, float]:
-    """How many steps a sample takes, and the step [s]."""
-    if step is None:
-        ratio = math.ceil(dt / LARGEST_STEP * (1.0 - FITS))
-        return ratio, dt / ratio
-    fine = positive("step", step, "s")
-    ratio = round(dt / fine)
-    if ratio < 1 or abs(ratio * fine - dt) > FITS * dt:
-        raise InputError(
-            f"the command's sample time {dt:g} s is {dt / fine:.6g} simulation steps of {fine:g} s: "
-            "give a step that it is a whole number of, or none."
-        )
-    return ratio, dt / ratio

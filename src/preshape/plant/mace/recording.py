@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from preshape.plant.beam_assembly import element_mass
 from preshape.plant.mace.linear import sensor_weights
 from preshape.plant.mace.multibody import lump_heights, node_damping
 from preshape.plant.mace.structure import LENGTH, SENSOR, MaceStructure
@@ -117,15 +118,7 @@ class Recording:
 
     def _kinetic(self) -> Matrix:
         s, count = self.structure, 4 * self.elements
-        a = LENGTH / count
-        shape = (s.bus_density * a / 420.0) * np.array(
-            [
-                [156.0, 22 * a, 54.0, -13 * a],
-                [22 * a, 4 * a * a, 13 * a, -3 * a * a],
-                [54.0, 13 * a, 156.0, -22 * a],
-                [-13 * a, -3 * a * a, -22 * a, 4 * a * a],
-            ]
-        )
+        shape = element_mass(LENGTH / count, s.bus_density)
         total = np.zeros(len(self.velocities))
         for k in range(count):
             for axis in (0, 1):

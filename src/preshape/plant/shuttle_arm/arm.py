@@ -13,8 +13,8 @@ from preshape.checks import positive
 from preshape.errors import InputError
 from preshape.mode import Modes
 from preshape.plant.diverged import Diverged
-from preshape.plant.sampled_command import command_rows
-from preshape.plant.shuttle_arm.asked import six_angles, steps_of, unstable
+from preshape.plant.sampled_command import command_rows, steps_of
+from preshape.plant.shuttle_arm.asked import LARGEST_STEP, six_angles, unstable
 from preshape.plant.shuttle_arm.calibration import CALIBRATED_JOINTS
 from preshape.plant.shuttle_arm.geometry import JOINTS, SHUTTLE_LINKS, Links, Payload
 from preshape.plant.shuttle_arm.inertia import end_points
@@ -51,7 +51,7 @@ class ShuttleArm:
         Gears, motors, and which imperfections are on.
     servo : Servo, optional
         None for free motors.
-    links : Links
+    empty : Links
         Geometry and masses, without payload.
 
     Raises
@@ -257,7 +257,7 @@ class ShuttleArm:
                 "commands of one length."
             )
         dt = positive("dt", dt, "s")
-        ratio, fine = steps_of(dt, step)
+        ratio, fine = steps_of(dt, step, LARGEST_STEP)
         self._check_step(starts, fine)
         joints = None if self.servo is None else self.joints
         reading = Reading(np.array(rows), ratio, fine, joints, seed)

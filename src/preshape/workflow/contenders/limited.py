@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from preshape.command import s_curve, trapezoid
+from preshape.errors import InputError
 from preshape.mode import Mode
 from preshape.plant import Output, exact_motion
 from preshape.profile import Profile
@@ -207,12 +208,22 @@ def _looks(command: Profile) -> NDArray[np.float64]:
 
 def kept(acceleration: Profile, limited: Limited) -> bool:
     """Whether a move keeps all limits."""
+    return not _broken(acceleration, limited)
+
+
+def _broken(acceleration: Profile, limited: Limited) -> list[str]:
+    """The limits that a move breaks, in words with the values."""
     speed, peak, jerk = peaks_of(acceleration, limited)
-    return (
-        (limited.speed is None or speed <= limited.speed * (1.0 + KEPT))
-        and peak <= limited.acceleration * (1.0 + KEPT)
-        and (limited.jerk is None or jerk <= limited.jerk * (1.0 + JERK_KEPT))
+    held = (
+        ("speed", speed, limited.speed, KEPT),
+        ("acceleration", peak, limited.acceleration, KEPT),
+        ("jerk", jerk, limited.jerk, JERK_KEPT),
     )
+    return [
+        f"{name} {found:.3g} where {limit:g} is allowed"
+        for name, found, limit, slack in held
+        if limit is not None and not found <= limit * (1.0 + slack)
+    ]
 
 
 def stretched(build: Callable[[float], Profile], limited: Limited) -> tuple[Profile, float]:
@@ -230,13 +241,23 @@ def stretched(build: Callable[[float], Profile], limited: Limited) -> tuple[Prof
     acceleration : Profile
     slower : float
         The factor, 1 when nothing had to be slowed.
+
+    Raises
+    ------
+    InputError
+        If a limit is still broken when the move is slowed by `SLOWEST`.
     """
     found = build(1.0)
     if kept(found, limited):
         return found, 1.0
     low, high = 1.0, 1.0 + 1e-3
-    while not kept(found := build(high), limited) and high < SLOWEST:
-        low, high = high, 1.0 + 2.0 * (high - 1.0)
+    while broken := _broken(found := build(high), limited):
+        if high >= SLOWEST:
+            raise InputError(
+                f"it cannot be slowed enough to keep the limits: {high:.0f} times slower it still reaches "
+                f"{' and '.join(broken)}; allow more, or take what amplifies the move less."
+            )
+        low, high = high, min(SLOWEST, 1.0 + 2.0 * (high - 1.0))
     while high - low > NEAR:
         middle = 0.5 * (low + high)
         trial = build(middle)
