@@ -50,7 +50,8 @@ def render_for(
     if precision == "single":
         weights = weights.astype(np.float32).astype(float)
     whole = Placed(placed, dt, delays.astype(np.uint32), weights, name, precision, version)
-    return Exported(chosen, whole, chosen.render(whole))
+    files = chosen.render(whole)
+    return Exported(chosen, whole, files, chosen.notes(files))
 
 
 def _one_of(what: str, given: str | None, allowed: tuple[str, ...], target: str) -> str:

@@ -69,6 +69,10 @@ class Placed:
     version: str
 
 
+def _nothing(files: Files) -> tuple[str, ...]:
+    return ()
+
+
 @dataclass(frozen=True)
 class Target:
     """One way out.
@@ -88,6 +92,8 @@ class Target:
     parse : callable
         The shaper in such files, with the times [s] and the weights that the target will use. InputError when it is not
         there.
+    notes : callable, optional
+        Sentences for the user on what came out in these files, beside what they hold for everybody.
     """
 
     name: str
@@ -96,6 +102,7 @@ class Target:
     limits: Limits
     render: Callable[[Placed], Files]
     parse: Callable[[Files], Shaper]
+    notes: Callable[[Files], tuple[str, ...]] = _nothing
 
 
 @dataclass(frozen=True)
@@ -110,8 +117,11 @@ class Exported:
         What is in it.
     files : mapping of str to str or bytes
         Names and contents.
+    notes : tuple of str
+        Sentences on what came out, for the user; mostly none.
     """
 
     target: Target
     placed: Placed
     files: Files = field(repr=False)
+    notes: tuple[str, ...] = ()
