@@ -29,8 +29,8 @@ def text_of(files: Mapping[str, str | bytes], wanted: str, suffixes: tuple[str, 
                 found.append(text)
     if len(found) != 1:
         raise InputError(
-            f"{len(found)} of {len(files)} files named *{' or *'.join(suffixes)} hold {wanted}: give the files of one "
-            "export, as preshape wrote them."
+            f"{len(found)} of {len(files)} files named *{' or *'.join(suffixes)} hold a table of preshape's: give the "
+            "files of one export, as they were written."
         )
     return found[0]
 

@@ -11,8 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from tests.export.fmu.slaves import DT, SHAPERS, exported, rendered, written
 
+from preshape import Shaper
 from preshape.errors import InputError
 from preshape.export import fmu
 from preshape.export.fmu import binary
@@ -117,3 +120,17 @@ def test_a_damaged_weight_does_not_read_back_as_the_shaper() -> None:
     other = f"{np.nextafter(export.placed.weights[1], 1.0):.16e}"
     source = changed(lambda name, data: data.replace(digits.encode(), other.encode()), content())
     assert digits != other and fmu.TARGET.parse({"axis.fmu": source}) != export.placed.shaper
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 40))
+@settings(max_examples=150, deadline=None)
+def test_whatever_the_bytes_are_they_are_a_shaper_or_an_input_error(seed: int, flips: int) -> None:
+    random = np.random.default_rng(seed)
+    damaged = bytearray(content())
+    ends = len(damaged) - 1500  # the directory, which says what is where
+    for at in random.integers(ends if seed % 2 else 0, len(damaged), flips).tolist():
+        damaged[at] = int(random.integers(256))
+    try:
+        assert isinstance(fmu.TARGET.parse({"axis.fmu": bytes(damaged)}), Shaper)
+    except InputError:
+        pass

@@ -9,9 +9,12 @@ import zipfile
 from pathlib import Path
 
 import fmpy
+import numpy as np
 import pytest
 from fmpy.build import build_platform_binary
 from tests.export.fmu.slaves import DT, RANDOM, Slave, exported, written
+
+from preshape.stream import Stream
 
 COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
 STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror"]
@@ -100,3 +103,23 @@ def test_an_importer_compiles_the_sources_by_the_build_description(precision: st
     build_platform_binary(tmp_path, build_dir=build, generator="Unix Makefiles")
     assert library.exists() and DT > 0.0
     assert Slave(tmp_path).started().shape(RANDOM) == ours
+
+
+def test_a_damaged_weight_shows_in_the_samples(tmp_path: Path) -> None:
+    """What the comparisons bit for bit would say to one wrong digit."""
+    units = sources(tmp_path, "two modes")
+    stream = Stream(exported("two modes").placed.shaper, DT)
+    expected = stream.push_block(RANDOM).tolist()
+    assert Slave(tmp_path).started().shape(RANDOM) == expected
+    taps = tmp_path / "sources" / "preshape_taps.h"
+    digits = f"{exported('two modes').placed.weights[3]:.16e}"
+    assert digits in taps.read_text()
+    taps.write_text(taps.read_text().replace(digits, f"{np.nextafter(float(digits), 2.0):.16e}"))
+    (library,) = (tmp_path / "binaries").rglob("*.so")
+    other = tmp_path / "damaged"
+    shutil.copytree(library.parent, other / "binaries" / library.parent.name)
+    shutil.copy(tmp_path / "modelDescription.xml", other)
+    built = other / "binaries" / library.parent.name / "axis.so"
+    built.unlink()
+    run(COMPILERS[0], "-std=c99", "-O2", "-fPIC", "-shared", *units, "-o", built)
+    assert Slave(other).started().shape(RANDOM) != expected

@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import math
 import re
+from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from blark.parse import parse as parse_twincat
+from hypothesis import given, settings
+from hypothesis import strategies as st_random
 from tests.export.st.interpreter import Instance, Machine, parsed
 
 from preshape import Shaper, design
@@ -176,6 +181,7 @@ def test_what_cannot_be_read_is_refused_with_a_sentence() -> None:
     good = files["FB_Shaper.st"]
     damaged = {
         "0 of 0 files": {},
+        "0 of 1 files named": {"FB_Shaper.txt": good},
         "2 of 2 files": {"a.st": good, "b.st": good},
         "has no table": {"a.st": good.replace("DELAYS", "LATENESSES")},
         "not numbers": {"a.st": good.replace("        0, ", "        0, __import__('os'), ")},
@@ -184,9 +190,9 @@ def test_what_cannot_be_read_is_refused_with_a_sentence() -> None:
         "not 1": {"a.st": re.sub(r"(\d\.\d+E-01)", "5.0E-01", good)},
         "above 0": {"a.st": good.replace("4.0000000000000001E-03", "0.0E+00")},
     }
-    for sentence, given in damaged.items():
+    for sentence, content in damaged.items():
         with pytest.raises(InputError, match=sentence):
-            st.TARGET.parse(given)
+            st.TARGET.parse(content)
 
 
 def test_a_family_from_a_file_cannot_leave_its_comment() -> None:
@@ -201,3 +207,38 @@ def test_limits_are_errors_of_the_user() -> None:
         render_for({"st": st.TARGET}, SHAPERS["zvd"], "st", dt=1e-6)
     with pytest.raises(InputError, match="taps"):
         render_for({"st": st.TARGET}, Shaper([0.0], [0.5], boxes=[(0.1, 5.1, 0.1)]), "st", dt=0.001)
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_the_files_of_twincat_hold_the_same_text(precision: str, tmp_path: Path) -> None:
+    plain = exported(SHAPERS["zvd"], precision=precision)
+    export = exported(SHAPERS["zvd"], precision=precision, version="twincat3")
+    assert sorted(export.files) == ["FB_Shaper.TcPOU", "PRG_ShaperTest.TcPOU"]
+    numbers = set()
+    for file, text in export.files.items():
+        (tmp_path / file).write_text(str(text))
+        (unit,) = ElementTree.fromstring(str(text).encode()).iter("POU")
+        declaration, body = unit.findtext("Declaration") or "", unit.findtext("Implementation/ST") or ""
+        whole = str(plain.files[f"{unit.get('Name')}.st"])
+        assert whole == f"{declaration}\n{body}{whole.splitlines()[-1]}\n" and file == f"{unit.get('Name')}.TcPOU"
+        numbers.add(unit.get("Id"))
+        results = list(parse_twincat(tmp_path / file))
+        assert len(results) == 2 and all(result.exception is None for result in results)
+    assert len(numbers) == 2
+    assert st.TARGET.parse(export.files) == st.TARGET.parse(plain.files)
+
+
+@given(st_random.data())
+@settings(max_examples=60, deadline=None)
+def test_whatever_the_file_holds_it_is_a_shaper_or_an_input_error(data: st_random.DataObject) -> None:
+    good = str(exported(SHAPERS["zvd"]).files["FB_Shaper.st"])
+    first = good.index("VAR CONSTANT")
+    at = data.draw(st_random.integers(first, good.index("VAR\n", first)))
+    piece = data.draw(st_random.text("0123456789.,-+E[]();:=* \n", max_size=6) | st_random.binary(max_size=4))
+    cut = data.draw(st_random.integers(0, 6))
+    insert = piece.encode() if isinstance(piece, str) else piece
+    content = good[:at].encode() + insert + good[at + cut :].encode()
+    try:
+        assert isinstance(st.TARGET.parse({"a.st": content}), Shaper)
+    except InputError:
+        pass

@@ -1,4 +1,7 @@
-"""The target "st": a function block and its self-test in structured text of IEC 61131-3, third edition."""
+"""The target "st": a function block and its self-test in structured text of IEC 61131-3, third edition (2013).
+
+Version "2013" is text to be pasted or imported; "twincat3" is the same text in files that TwinCAT 3 adds to a project.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,7 @@ import numpy as np
 
 from preshape.errors import InputError
 from preshape.export.read_back import numbers_in, shaper_of_taps, text_of
+from preshape.export.st.twincat import tcpou
 from preshape.export.target import Files, Limits, Placed, Target
 from preshape.shaper import Shaper
 
@@ -63,15 +67,20 @@ def render(placed: Placed) -> Files:
         "longest": longest,
         "expected": _wrapped(_literal(value) for value in _golden(placed)),
     }
-    return {f"{block}.st": _filled("block.st", declared), f"{program}.st": _filled("self_test.st", tested)}
+    units = {block: _filled("block.st", declared), program: _filled("self_test.st", tested)}
+    if placed.version == "twincat3":
+        return {f"{name}.TcPOU": tcpou(name, text) for name, text in units.items()}
+    return {f"{name}.st": text for name, text in units.items()}
 
 
 def parse(files: Files) -> Shaper:
     """The shaper in a function block that :func:`render` wrote."""
-    text = text_of(files, "FUNCTION_BLOCK", (".st",))
+    text = text_of(files, "END_VAR\nVAR CONSTANT\n    LARGEST", (".st", ".tcpou"))
     dt, delays, weights = DT.search(text), DELAYS.search(text), WEIGHTS.search(text)
     if dt is None or delays is None or weights is None:
-        raise InputError("this function block has no table of preshape's: give the FB_....st that it wrote, unchanged.")
+        raise InputError(
+            "this function block has no table of preshape's: give the FB_... file that it wrote, unchanged."
+        )
     return shaper_of_taps(float(dt[1]), numbers_in(delays[1], "delays"), numbers_in(weights[1], "weights"))
 
 
@@ -110,7 +119,7 @@ def _filled(name: str, values: dict[str, object]) -> str:
 TARGET = Target(
     name="st",
     summary="IEC 61131-3 structured text: a function block for CODESYS, TwinCAT and other PLCs, with a self-test",
-    versions=("2013",),
+    versions=("2013", "twincat3"),
     limits=Limits(taps=1000, samples=100_000, precisions=("double", "single")),
     render=render,
     parse=parse,
