@@ -48,14 +48,14 @@ def written(export: Exported, folder: Path) -> Path:
 class Slave:
     """One instance, and the messages it logged."""
 
-    def __init__(self, folder: Path, token: str | None = None) -> None:
+    def __init__(self, folder: Path, token: str | None = None, dt: float = DT) -> None:
         description = read_model_description(str(folder))
         self.messages: list[str] = []
         self.fmu = FMU3Slave(
             guid=token or description.instantiationToken, unzipDirectory=str(folder), modelIdentifier="axis"
         )
         self.fmu.instantiate(logMessage=lambda environment, status, category, text: self.messages.append(text.decode()))
-        self.time = 0.0
+        self.time, self.dt = 0.0, dt
 
     def started(self, initial: float = 0.0, pass_not_finite: bool = False, start: float = 0.0) -> Slave:
         self.fmu.setFloat64([INITIAL], [initial])
@@ -67,8 +67,8 @@ class Slave:
 
     def step(self, command: float, samples: int = 1) -> float:
         self.fmu.setFloat64([COMMAND], [command])
-        self.fmu.doStep(self.time, samples * DT)
-        self.time += samples * DT
+        self.fmu.doStep(self.time, samples * self.dt)
+        self.time += samples * self.dt
         return self.shaped
 
     def shape(self, command: NDArray[np.float64]) -> list[float]:

@@ -202,13 +202,6 @@ def test_a_family_from_a_file_cannot_leave_its_comment() -> None:
     assert "evil" in text and len(parsed(text)) == 1
 
 
-def test_limits_are_errors_of_the_user() -> None:
-    with pytest.raises(InputError, match="samples long"):
-        render_for({"st": st.TARGET}, SHAPERS["zvd"], "st", dt=1e-6)
-    with pytest.raises(InputError, match="taps"):
-        render_for({"st": st.TARGET}, Shaper([0.0], [0.5], boxes=[(0.1, 5.1, 0.1)]), "st", dt=0.001)
-
-
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_the_files_of_twincat_hold_the_same_text(precision: str, tmp_path: Path) -> None:
     plain = exported(SHAPERS["zvd"], precision=precision)
