@@ -88,7 +88,8 @@ def render(
         )
     placed = _placed(shaper, positive("dt", dt, "s"), grid, name, precision, version)
     _check(chosen, placed)
-    return Exported(chosen, placed, chosen.render(placed))
+    files = chosen.render(placed)
+    return Exported(chosen, placed, files, chosen.notes(files))
 
 
 def _placed(shaper: Shaper, dt: float, grid: str | None, name: str, precision: str, version: str) -> Placed:

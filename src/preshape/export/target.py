@@ -90,6 +90,10 @@ class Placed:
         return self.ring * (4 if self.precision == "single" else 8)
 
 
+def _nothing(files: Files) -> tuple[str, ...]:
+    return ()
+
+
 @dataclass(frozen=True)
 class Target:
     """One way out.
@@ -111,6 +115,8 @@ class Target:
         :class:`Placed`, bit for bit. InputError when it is not there.
     next_step : callable
         What the user does with the files, as lines of text; the command line shows them.
+    notes : callable, optional
+        Sentences for the user on what came out in these files, beside what they hold for everybody.
     """
 
     name: str
@@ -120,6 +126,7 @@ class Target:
     render: Callable[[Placed], Files]
     parse: Callable[[Files], Shaper]
     next_step: Callable[[Placed], tuple[str, ...]] = field(default=lambda placed: ())
+    notes: Callable[[Files], tuple[str, ...]] = _nothing
 
 
 @dataclass(frozen=True)
@@ -134,8 +141,11 @@ class Exported:
         What is in it.
     files : mapping of str to str or bytes
         Names and contents.
+    notes : tuple of str
+        Sentences on what came out, for the user; mostly none.
     """
 
     target: Target
     placed: Placed
     files: Files = field(repr=False)
+    notes: tuple[str, ...] = ()

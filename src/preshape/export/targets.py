@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from preshape.export.c import C
+from preshape.export.fmu import FMU
 from preshape.export.linuxcnc import LINUXCNC
+from preshape.export.st import ST
 from preshape.export.target import Target
 
 __all__ = ["TARGETS"]
@@ -13,5 +15,7 @@ TARGETS: dict[str, Target] = {
     for target in (
         C,
         LINUXCNC,
+        ST,
+        FMU,
     )
 }

@@ -1,0 +1,136 @@
+"""The FMU as a file: reproducible, complete, read back with limits, and honest when there is no compiler."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy.validation import validate_fmu
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.export.fmu.slaves import DT, SHAPERS, exported, rendered, written
+
+from preshape import Shaper
+from preshape.errors import InputError
+from preshape.export import fmu
+from preshape.export.fmu import binary
+
+
+def content(name: str = "zvd", **wishes: str) -> bytes:
+    return bytes(exported(name, **wishes).files["axis.fmu"])  # type: ignore[arg-type]
+
+
+def changed(change: Callable[[str, bytes], bytes | None], source: bytes) -> bytes:
+    """The FMU with every entry as `change` makes it."""
+    whole = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(source)) as old, zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED) as new:
+        for name in old.namelist():
+            data = change(name, old.read(name))
+            if data is not None:
+                new.writestr(name, data)
+    return whole.getvalue()
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+@pytest.mark.parametrize("name", SHAPERS)
+def test_what_was_written_reads_back(name: str, precision: str) -> None:
+    export = exported(name, precision=precision)
+    delays, weights = fmu.FMU.parse(export.files).taps(DT)
+    np.testing.assert_array_equal(delays, export.placed.delays)
+    np.testing.assert_array_equal(weights[:-1], export.placed.weights[:-1])
+    assert weights[-1] == pytest.approx(export.placed.weights[-1], abs=0.0 if precision == "double" else 1e-6)
+
+
+def test_the_same_shaper_gives_the_same_bytes_and_another_another_token() -> None:
+    assert rendered().files == rendered().files
+    with zipfile.ZipFile(io.BytesIO(content())) as archive:
+        assert archive.namelist() == sorted(archive.namelist())
+        assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+    tokens = set()
+    for source in (content(), content("negative"), content(precision="single")):
+        with zipfile.ZipFile(io.BytesIO(source)) as archive:
+            tokens.add(archive.read("sources/preshape_table.h").split(b'"')[1])
+            assert archive.read("modelDescription.xml").count(sorted(tokens)[-1]) <= 1
+    assert len(tokens) == 3
+
+
+def test_the_kernel_is_the_one_that_python_runs() -> None:
+    with zipfile.ZipFile(io.BytesIO(content())) as archive:
+        for name in ("preshape_kernel.h", "preshape_kernel.c"):
+            assert archive.read(f"sources/{name}") == (files("preshape.kernel") / "c" / name).read_bytes()
+
+
+@pytest.mark.parametrize("missing", ["no compiler", "a compiler that fails", "another system"])
+def test_without_a_binary_the_user_is_told(missing: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    if missing == "no compiler":
+        monkeypatch.setattr(binary, "COMPILERS", ("no-such-compiler",))
+    elif missing == "a compiler that fails":
+        monkeypatch.setattr(binary, "COMPILERS", ("false",))
+    else:
+        monkeypatch.setattr(binary.platform, "machine", lambda: "mips")
+    export = rendered()
+    (note,) = export.notes
+    assert "sources only" in note and "gcc" in note
+    with zipfile.ZipFile(written(export, tmp_path)) as archive:
+        assert not any(name.startswith("binaries/") for name in archive.namelist())
+    assert validate_fmu(str(tmp_path / "axis.fmu")) == []
+    assert fmu.FMU.parse(export.files) == export.placed.shaper
+
+
+def test_what_cannot_be_read_is_refused_with_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    good = content()
+    table, taps = "sources/preshape_table.h", "sources/preshape_taps.h"
+
+    def edited(entry: str, old: bytes, new: bytes) -> bytes:
+        return changed(lambda name, data: data.replace(old, new) if name == entry else data, good)
+
+    many = io.BytesIO()
+    with zipfile.ZipFile(many, "w") as archive:
+        for index in range(1001):
+            archive.writestr(str(index), "")
+    damaged = {
+        "0 of 0 files": None,
+        "is damaged": b"PK no zip at all",
+        "damaged": good[:-100],
+        "holds no": changed(lambda name, data: None if name == taps else data, good),
+        "1001 entries": many.getvalue(),
+        "longer than": changed(lambda name, data: data + b" " * 10_000_000 if name == taps else data, good),
+        "not preshape's": edited(taps, b"DELAYS", b"LATENESSES"),
+        "not numbers": edited(taps, b" 0u, ", b" 0u, __import__, "),
+        "delays and": edited(taps, b" 0u, ", b" "),
+        "not 1": edited(taps, b"e-01", b"e-02"),
+        "above 0": edited(table, b"4.0000000000000001e-03", b"0.0e+00"),
+    }
+    for sentence, source in damaged.items():
+        with pytest.raises(InputError, match=sentence):
+            fmu.FMU.parse({} if source is None else {"axis.fmu": source})
+    monkeypatch.setattr("preshape.export.fmu.archive.MOST_PACKED", 100)
+    with pytest.raises(InputError, match="up to 100 are read"):
+        fmu.FMU.parse({"axis.fmu": good})
+
+
+def test_a_damaged_weight_does_not_read_back_as_the_shaper() -> None:
+    export = exported()
+    digits = f"{export.placed.weights[1]:.16e}"
+    other = f"{np.nextafter(export.placed.weights[1], 1.0):.16e}"
+    source = changed(lambda name, data: data.replace(digits.encode(), other.encode()), content())
+    assert digits != other and fmu.FMU.parse({"axis.fmu": source}) != export.placed.shaper
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 40))
+@settings(max_examples=150, deadline=None)
+def test_whatever_the_bytes_are_they_are_a_shaper_or_an_input_error(seed: int, flips: int) -> None:
+    random = np.random.default_rng(seed)
+    damaged = bytearray(content())
+    ends = len(damaged) - 1500  # the directory, which says what is where
+    for at in random.integers(ends if seed % 2 else 0, len(damaged), flips).tolist():
+        damaged[at] = int(random.integers(256))
+    try:
+        assert isinstance(fmu.FMU.parse({"axis.fmu": bytes(damaged)}), Shaper)
+    except InputError:
+        pass
