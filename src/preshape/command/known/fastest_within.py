@@ -123,7 +123,9 @@ def fastest_within(
     Notes
     -----
     After Singer & Seering, section 2.4, who rescale the size of a shaped input to the actuator's limit; of a move of
-    given distance it is the time that is free.
+    given distance it is the time that is free. Shaped peaks may jump with the time scale, so scales 0.2 % apart are
+    looked at from the fast side, and the first that keeps the limits is refined by bisection; a narrower range of
+    faster ones may be missed.
 
     Examples
     --------
