@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -44,7 +45,7 @@ def numbers_in(text: str, what: str) -> list[float]:
 
 
 def shaper_of_taps(dt: float, delays: Sequence[float], weights: Sequence[float]) -> Shaper:
-    """The shaper of taps as a target uses them: its last weight is what the others leave of 1.
+    """The shaper of taps as a target uses them: in single precision the last weight is what the others leave of 1.
 
     Parameters
     ----------
@@ -66,8 +67,10 @@ def shaper_of_taps(dt: float, delays: Sequence[float], weights: Sequence[float])
         raise InputError(
             f"the file holds {d.size} delays and {w.size} weights: one of each a tap is needed, delays whole."
         )
-    if 1e-9 < abs(w.sum() - 1.0) <= SUM_TOLERANCE:
-        w[-1] = 1.0 - w[:-1].sum()
+    with np.errstate(over="ignore"):
+        single = bool((w.astype(np.float32) == w).all())
+    if single and abs(w.sum() - 1.0) <= SUM_TOLERANCE:
+        w[-1] = 1.0 - math.fsum(w[:-1])
     if d[0] > 0.0:  # a shaper starts with the command
         d, w = np.concatenate([[0.0], d]), np.concatenate([[0.0], w])
     return Shaper(d * np.float64(dt), w)
