@@ -42,7 +42,7 @@ def export_screen(exported: Exported, saved: SavedExport) -> None:
         screen.print(f"  {path}", soft_wrap=True)
     screen.print(
         f"\n{placed.delays.size} taps every {1e3 * placed.dt:.6g} ms, {placed.precision} precision; latency "
-        f"{placed.latency_samples} samples = {1e3 * placed.latency:.6g} ms; ring {placed.ring_bytes} bytes"
+        f"{placed.latency_samples} samples = {1e3 * placed.latency:.6g} ms"
     )
     if design.modes is None:
         screen.print("what it leaves of the vibration is not known: the shaper's file does not say its modes")
@@ -56,6 +56,8 @@ def export_screen(exported: Exported, saved: SavedExport) -> None:
         screen.print(table)
     if (placed.weights < 0.0).any():
         screen.print(Text("! some taps are negative: the shaped command may exceed the command", style="bold yellow"))
+    for note in exported.notes:
+        screen.print(Text(f"! {note}", style="bold yellow"))
     screen.print()
     for line in exported.target.next_step(placed):
         screen.print(line, soft_wrap=True)

@@ -98,12 +98,13 @@ def _next_step(placed: Placed) -> tuple[str, ...]:
         f"  {_compile_line(placed)}",
         f"  ./{placed.name}_selftest",
         f"Then compile preshape_kernel.c and {placed.name}.c into your firmware; {placed.name}.h shows what to call.",
+        f"Its ring takes {placed.ring_bytes} bytes of memory.",
     )
 
 
 C = Target(
     "c",
-    "C99 for any controller: the kernel, a table for flash, and a self-test with golden samples",
+    "C99 for any controller: kernel, table for flash, self-test",
     ("c99",),
     Limits(taps=TAPS_ALLOWED, samples=LONGEST, precisions=("double", "single")),
     _render,

@@ -81,6 +81,13 @@ def notes(files: Files) -> tuple[str, ...]:
     )
 
 
+def _next_step(placed: Placed) -> tuple[str, ...]:
+    return (
+        f"Import it, and step it by {1e3 * placed.dt:.6g} ms or whole multiples: other steps are refused.",
+        "Command in, shaped out; set the parameter initial to where the machine rests.",
+    )
+
+
 def _token(content: dict[str, str]) -> str:
     """A name for exactly this content, which FMI asks for."""
     digest = hashlib.sha256()
@@ -104,10 +111,11 @@ def _filled(name: str, values: dict[str, object]) -> str:
 
 FMU = Target(
     name="fmu",
-    summary="FMI 3.0 co-simulation: the shaper as a unit for simulation tools, with the kernel's own source",
+    summary="FMI 3.0 co-simulation unit for simulation tools",
     versions=("3.0",),
     limits=Limits(taps=10_000, samples=1_000_000, precisions=("double", "single")),
     render=render,
     parse=parse,
+    next_step=_next_step,
     notes=notes,
 )

@@ -84,6 +84,13 @@ def parse(files: Files) -> Shaper:
     return shaper_of_taps(float(dt[1]), numbers_in(delays[1], "delays"), numbers_in(weights[1], "weights"))
 
 
+def _next_step(placed: Placed) -> tuple[str, ...]:
+    return (
+        "Add both to your PLC project. Run the self-test in any task first: Passed says whether every bit is Python's.",
+        f"Then call the function block in every cycle of a task of {1e3 * placed.dt:.6g} ms.",
+    )
+
+
 def _golden(placed: Placed) -> list[float]:
     """The last samples of the self-test, from its commands, in the precision of the target."""
     real = PRECISIONS[placed.precision]
@@ -118,9 +125,10 @@ def _filled(name: str, values: dict[str, object]) -> str:
 
 ST = Target(
     name="st",
-    summary="IEC 61131-3 structured text: a function block for CODESYS, TwinCAT and other PLCs, with a self-test",
+    summary="IEC 61131-3 function block for CODESYS, TwinCAT and other PLCs",
     versions=("2013", "twincat3"),
     limits=Limits(taps=1000, samples=100_000, precisions=("double", "single")),
     render=render,
     parse=parse,
+    next_step=_next_step,
 )
