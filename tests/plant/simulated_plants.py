@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from preshape.plant import (
+    ChangingModes,
     FlexibleBody,
     FloatingOscillator,
     FunctionPlant,
@@ -44,6 +45,8 @@ class Simulated:
         Where outputs settle under a constant unit of the first input, for plants that do.
     tolerance : float
         Of its simulation, relative.
+    stays : bool
+        Whether it is the same machine at any time.
     """
 
     make: Callable[[], SimulatedPlant]
@@ -51,6 +54,7 @@ class Simulated:
     linear: bool = True
     static: dict[str, float] | None = None
     tolerance: float = 1e-11
+    stays: bool = True
 
 
 def two_inputs() -> LinearPlant:
@@ -91,6 +95,11 @@ def statically(place: int) -> dict[str, float]:
 
 
 PLANTS: dict[str, Simulated] = {
+    "changing modes": Simulated(
+        lambda: ChangingModes(lambda t: [(1.0 + 0.2 * float(np.sin(t)), 0.1), (2.5, 0.1)]),
+        static={"output": 1.0},
+        stays=False,
+    ),
     "linear MACE": Simulated(linear_mace, dt=1e-3, tolerance=1e-9),
     "matrices, modes apart": Simulated(
         lambda: from_matrices(MASS, 0.03, STIFFNESS, input=0, outputs=ENDS), static=statically(0)

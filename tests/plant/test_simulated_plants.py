@@ -13,6 +13,7 @@ from preshape.plant import SimulatedPlant
 EACH = pytest.mark.parametrize("name", PLANTS)
 STEADY = pytest.mark.parametrize("name", [name for name, one in PLANTS.items() if one.static])
 LINEAR = pytest.mark.parametrize("name", [name for name, one in PLANTS.items() if one.linear])
+STAYS = pytest.mark.parametrize("name", [name for name, one in PLANTS.items() if one.stays])
 
 
 def random_command(plant: SimulatedPlant, count: int, seed: int = 1) -> np.ndarray:
@@ -66,7 +67,7 @@ def test_what_comes_later_changes_nothing_before(name: str) -> None:
     close(dict(begun), {key: values[:77] for key, values in whole.items()}, one.tolerance)
 
 
-@EACH
+@STAYS
 def test_a_later_command_has_a_later_effect(name: str) -> None:
     one = PLANTS[name]
     plant = one.make()

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from preshape import Modes, Shaper, design
+from preshape import Shaper, design
 from preshape.engine import is_proved_shortest
 from preshape.errors import InputError
 from preshape.stream import Schedule, Stream
@@ -81,7 +81,7 @@ def test_its_shaper_is_the_proved_one_for_the_modes_there(a: float, b: float) ->
 
 
 def test_interpolated_modes_leave_less_than_interpolated_impulses() -> None:
-    """Half way between two rows the rows' shapers in equal parts leave vibration, the shaper of the modes there none."""
+    """Half way between two rows: the rows' shapers in equal parts leave vibration, the shaper of the modes none."""
     left, right = (design.direct(pose(a, 0.0), 0) for a in (0.0, 2.0))
     times = np.unique(np.concatenate([left.times, right.times]))
     mixed = sum(np.bincount(np.searchsorted(times, s.times), 0.5 * s.amplitudes, times.size) for s in (left, right))
