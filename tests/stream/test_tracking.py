@@ -130,6 +130,16 @@ def test_both_kernels_follow_with_the_same_bits(command: NDArray[np.float64], pl
     assert bits(outputs[0]) == bits(outputs[1]) == bits(streamed(Stream(FIRST, DT), command, plan))
 
 
+def test_of_a_step_that_was_commanded_tracking_changes_nothing() -> None:
+    """It is one increment, and goes through the shaper of its time."""
+    stream, fixed, step = Stream(FIRST, DT), Stream(FIRST, DT), np.full(400, 0.7)
+    shaped = [stream.push_block(step[:1])]
+    for k in range(1, 400):
+        stream.track(moved(0.0005 * min(k, 40)))
+        shaped.append(stream.push_block(step[k : k + 1]))
+    np.testing.assert_allclose(np.concatenate(shaped), fixed.push_block(step), rtol=0, atol=1e-15)
+
+
 def test_modes_that_stay_are_a_fixed_stream_bit_for_bit() -> None:
     command = np.random.default_rng(3).normal(size=400)
     tracking, fixed = Stream(FIRST, DT), Stream(FIRST, DT)

@@ -51,7 +51,7 @@ class ChangingModes:
     Notes
     -----
     The command is held between samples; about it the motion is homogeneous, and a step of it is a Magnus expansion of
-    fourth order, exact for modes that stay.
+    fourth order, exact for modes that stay. The steps are kept for the next command of as many samples.
 
     Examples
     --------
@@ -70,6 +70,7 @@ class ChangingModes:
         self._gains = gain_matrix(gains, self._count)
         if self._gains.ndim != 1:
             raise InputError(f"gains have shape {self._gains.shape}: give ({self._count},), for the one output.")
+        self._kept: tuple[int, float, Array] | None = None
 
     def __repr__(self) -> str:
         return f"<ChangingModes: {self._count} mode(s), at first {self.modes()!r}>"
@@ -115,7 +116,9 @@ class ChangingModes:
         dt = positive("dt", dt, "s")
         place, speed = np.zeros((2, self._count))
         places = np.zeros((rows.shape[1], self._count))
-        steps = self._steps(rows.shape[1] - 1, dt)
+        if self._kept is None or self._kept[:2] != (rows.shape[1], dt):
+            self._kept = rows.shape[1], dt, self._steps(rows.shape[1] - 1, dt)
+        steps = self._kept[2]
         for n, u in enumerate(rows[0, :-1].tolist()):
             apart = place - u
             place, speed = (
