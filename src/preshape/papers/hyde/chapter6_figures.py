@@ -10,7 +10,7 @@ import numpy as np
 from preshape.papers.hyde.chapter5_slews import DT
 from preshape.papers.hyde.chapter6 import Adaptive
 from preshape.papers.hyde.chapter6_mace import SLEW, Follow
-from preshape.papers.hyde.chapter6_sweep import CENTRE, MOVE, REST, SPREAD, part_done
+from preshape.papers.hyde.chapter6_sweep import CENTRE, MOVE, REST, SPREAD, Sweep, part_done
 from preshape.papers.reproduction import Figure
 from preshape.report.figures import ACCENT, MUTED, SECOND, new_figure, tidy
 
@@ -25,7 +25,13 @@ FIXED = ("fixed", "band", "unshaped")
 
 def figures(done: Adaptive) -> list[Figure]:
     """The sweep, and MACE if it was simulated."""
-    made = [Figure("6.2-sweep", "[ours: what is left while frequencies sweep by +-20 %]", lambda: swept_figure(done))]
+    made = [
+        Figure(
+            "6.2-sweep",
+            "[ours: what is left while frequencies sweep by +-20 %]",
+            lambda: swept_figure(done.one, done.two),
+        )
+    ]
     mace = done.mace
     if mace is not None:
         made.append(
@@ -34,7 +40,7 @@ def figures(done: Adaptive) -> list[Figure]:
     return made
 
 
-def swept_figure(done: Adaptive) -> Drawing:
+def swept_figure(one: Sweep, two: Sweep) -> Drawing:
     """Frequencies over time; residuals by method, for one mode and for two."""
     figure = new_figure(7.4, 6.4)
     above, below = figure.subplots(2, 1, height_ratios=[1.0, 2.4])
@@ -50,8 +56,8 @@ def swept_figure(done: Adaptive) -> Drawing:
     _dots(
         below,
         {
-            "one mode": {name: 100.0 * value for name, value in done.one.left.items()},
-            "two modes": {name: 100.0 * value for name, value in done.two.left.items()},
+            "one mode": {name: 100.0 * value for name, value in one.left.items()},
+            "two modes": {name: 100.0 * value for name, value in two.left.items()},
         },
     )
     tidy(below, "left of the plain command's vibration [%]", "", "Shapers that stay (hollow) and that follow (filled)")
