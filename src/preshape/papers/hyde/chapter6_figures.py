@@ -60,7 +60,12 @@ def swept_figure(one: Sweep, two: Sweep) -> Drawing:
             "two modes": {name: 100.0 * value for name, value in two.left.items()},
         },
     )
-    tidy(below, "left of the plain command's vibration [%]", "", "Shapers that stay (hollow) and that follow (filled)")
+    tidy(
+        below,
+        "left of the plain command's vibration [%]",
+        "method",
+        "Shapers that stay (hollow) and that follow (filled)",
+    )
     return figure
 
 
@@ -76,7 +81,12 @@ def _mace(done: Follow) -> Drawing:
     above.set_ylim(1.6, 2.1)
     tidy(above, "time [s]", "frequency [Hz]", "The fundamental during the slew")
     _dots(below, {"MACE": {name: 1e6 * value for name, value in done.left.items()}})
-    tidy(below, r"left after 6 s, peak to peak, in 10$^{-6}$ [m]", "", "Shapers that stay (hollow) and follow (filled)")
+    tidy(
+        below,
+        r"left after 6 s, peak to peak, in 10$^{-6}$ [m]",
+        "method",
+        "Shapers that stay (hollow) and follow (filled)",
+    )
     return figure
 
 

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape import Shaper, design
+from preshape import Shaper
+from preshape.design import direct, specified_insensitivity
 from preshape.mode import Modes
 from preshape.papers.hyde.chapter5_identified import article
 from preshape.papers.hyde.chapter5_slews import DT, END, OURS, SETTLED, residual
@@ -69,11 +70,11 @@ def follow() -> Follow:
     command = 2.0 * math.radians(60.0) * np.minimum(times / SLEW, 1.0)
     shapers = {
         "unshaped": Shaper([0.0], [1.0]),
-        "fixed, outboard": design.direct(modes[-60.0]),
-        "fixed, vertical": design.direct(modes[0.0]),
-        "fixed, inboard": design.direct(modes[60.0]),
-        "fixed, vertical, order 2": design.direct(modes[0.0], 2),
-        "band of all, 2 %": design.specified_insensitivity(_bands(modes), OURS),
+        "fixed, outboard": direct(modes[-60.0]),
+        "fixed, vertical": direct(modes[0.0]),
+        "fixed, inboard": direct(modes[60.0]),
+        "fixed, vertical, order 2": direct(modes[0.0], 2),
+        "band of all, 2 %": specified_insensitivity(_bands(modes), OURS),
     }
     left, durations, path, settled = {}, {}, np.zeros(0), 0.0
     for name, shaper in shapers.items():
@@ -118,7 +119,7 @@ def _tracked(
     command: NDArray[np.float64], table: Schedule, path: NDArray[np.float64], order: int
 ) -> tuple[NDArray[np.float64], float]:
     """The command through a shaper that follows the angle, and the longest shaper [s]."""
-    stream = Stream(design.direct(table.modes(ANGLES[0]), order), DT)
+    stream = Stream(direct(table.modes(ANGLES[0]), order), DT)
     shaped, longest = np.empty_like(command), stream.latency
     for start in range(0, command.size, CALLS):
         if start * DT <= SLEW:  # afterwards nothing is commanded

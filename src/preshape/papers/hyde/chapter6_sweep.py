@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape import Shaper, design
+from preshape import Shaper
+from preshape.design import direct, specified_insensitivity, zv, zvd
 from preshape.plant import ChangingModes
 from preshape.stream import Schedule, Stream
 
@@ -81,11 +82,11 @@ def sweep(count: int) -> Sweep:
     study = _Study(count)
     middle = [(f, 0.0) for f in CENTRE[:count]]
     bands = [((1.0 - SPREAD) * f, (1.0 + SPREAD) * f) for f in CENTRE[:count]]
-    study.fixed("fixed ZV", design.zv(middle))
-    study.fixed("fixed ZVD", design.zvd(middle))
-    study.fixed("fixed direct", design.direct(middle))
-    study.fixed("fixed direct, order 2", design.direct(middle, 2))
-    study.fixed("band +-20 %, 5 %", design.specified_insensitivity(bands, TOLERANCE))
+    study.fixed("fixed ZV", zv(middle))
+    study.fixed("fixed ZVD", zvd(middle))
+    study.fixed("fixed direct", direct(middle))
+    study.fixed("fixed direct, order 2", direct(middle, 2))
+    study.fixed("band +-20 %, 5 %", specified_insensitivity(bands, TOLERANCE))
     now = study.modes
     table = Schedule({x: now(x * MOVE) for x in np.linspace(0.0, 1.0, ROWS).tolist()})
     study.tracking("tracked", now)
@@ -128,7 +129,7 @@ class _Study:
         self, name: str, believed: ModesAt, *, order: int = 1, every: float = CALLS, ahead: float = 0.0
     ) -> None:
         """`believed` tracked, by `ahead` durations of the shaper in force earlier."""
-        shaper = design.direct(believed(0.0), order)
+        shaper = direct(believed(0.0), order)
         stream, shaped, longest = Stream(shaper, DT), np.empty_like(self._command), shaper.duration
         step = round(every / DT)
         for start in range(0, shaped.size, step):
