@@ -20,10 +20,10 @@ from preshape.errors import InputError
 from preshape.mode import Modes, ModesLike
 from preshape.shaper import Shaper
 
-__all__ = ["Configuration", "Schedule"]
+__all__ = ["Schedule"]
 
-Configuration: TypeAlias = float | tuple[float, ...]
-"""A number, such as a rope's length, or several, such as a pose."""
+Table: TypeAlias = Mapping[float, ModesLike] | Mapping[tuple[float, ...], ModesLike]
+"""By configuration: a number, such as a rope's length, or several, such as a pose."""
 
 
 class Schedule:
@@ -60,7 +60,7 @@ class Schedule:
     True
     """
 
-    def __init__(self, table: Mapping[Configuration, ModesLike], order: int = 1, *, outside: str = "refuse") -> None:
+    def __init__(self, table: Table, order: int = 1, *, outside: str = "refuse") -> None:
         if outside not in ("refuse", "hold"):
             raise InputError(f'outside is {outside!r}: it is "refuse" or "hold".')
         if not isinstance(table, Mapping) or not table:

@@ -65,7 +65,7 @@ class Follow:
 def follow() -> Follow:
     """The modes on the way, then every slew."""
     modes = {angle: _vibrating(angle) for angle in ANGLES}
-    table = Schedule(modes, outside="hold")  # type: ignore[arg-type]
+    table = Schedule(modes, outside="hold")
     times = DT * np.arange(round(END / DT) + 1, dtype=float)
     command = 2.0 * math.radians(60.0) * np.minimum(times / SLEW, 1.0)
     shapers = {

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from preshape import Shaper
 from preshape.design import direct, specified_insensitivity, zv, zvd
+from preshape.mode import ModesLike
 from preshape.plant import ChangingModes
 from preshape.stream import Schedule, Stream
 
@@ -47,7 +48,7 @@ RATES = (0.01, 0.02, 0.04)
 PARTS = 200
 """Samples a period there; every impulse falls on one."""
 
-ModesAt = Callable[[float], list[tuple[float, float]]]
+ModesAt = Callable[[float], ModesLike]
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,7 @@ def sweep(count: int) -> Sweep:
     study.tracking("tracked every 0.25 s", now, every=0.25)
     study.tracking("tracked, 0.2 s late", lambda t: now(t - LATE))
     study.tracking("tracked, 2 % off", lambda t: [(OFF * f, z) for f, z in now(t)])
-    study.tracking(f"scheduled, {ROWS} rows", lambda t: table.modes(part_done(t)))  # type: ignore[arg-type, return-value]
+    study.tracking(f"scheduled, {ROWS} rows", lambda t: table.modes(part_done(t)))
     study.tracking("tracked, half a shaper ahead", now, ahead=0.5)
     study.tracking("tracked, order 2", now, order=2)
     study.tracking("tracked, order 2, ahead", now, order=2, ahead=0.5)
