@@ -16,6 +16,8 @@ from preshape.engine.basis import Basis
 from preshape.engine.polynomial import Polynomial
 from preshape.engine.projection import project
 from preshape.files import write_atomically
+from preshape.papers.hyde.chapter6_figures import swept_figure
+from preshape.papers.hyde.chapter6_sweep import sweep
 from preshape.plant import FloatingOscillator, load_plant
 from preshape.report import comparison_figure, contour_figure, move_figure, simulation_figure
 from preshape.report.figures import ACCENT, INK, MUTED, SECOND, SOFT, as_svg, new_figure, tidy
@@ -208,7 +210,13 @@ def contours() -> Figure:
     return contour_figure(paths, names=part.channels, unit=part.unit)
 
 
+def adaptive() -> Figure:
+    """What shapers that stay and that follow leave, as `preshape reproduce hyde` measures it."""
+    return swept_figure(sweep(1), sweep(2))
+
+
 FIGURES = {
+    "adaptive": adaptive,
     "certificate": certificate,
     "comparison": comparison,
     "contours": contours,

@@ -30,7 +30,7 @@ from preshape.papers.reproduction import VERDICTS
 from preshape.report import as_svg
 
 NAMES = [paper.name for paper in PAPERS]
-HYDE_5, HYDE_6 = (29, ["6.1"]) if find_spec("exudyn") else (6, [])
+HYDE_5, HYDE_6 = (29, ["6.1", "6.2-sweep", "6.2-mace"]) if find_spec("exudyn") else (6, ["6.2-sweep"])
 VOID = {"meta", "img", "br"}
 
 

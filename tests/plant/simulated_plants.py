@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from preshape.plant import (
+    ChangingModes,
     FlexibleBody,
     FloatingOscillator,
     FunctionPlant,
@@ -128,6 +129,11 @@ SUDDEN = "test_even_a_step_at_once_has_the_same_effect_later"
 LATER = "test_a_later_command_has_a_later_effect"
 
 PLANTS: dict[str, Simulated] = {
+    "changing modes": Simulated(
+        lambda: ChangingModes(lambda t: [(1.0 + 0.2 * float(np.sin(t)), 0.1), (2.5, 0.1)]),
+        static={"output": 1.0},
+        spared=dict.fromkeys((LATER, SUDDEN), "its modes depend on the time"),
+    ),
     "linear MACE": Simulated(linear_mace, dt=1e-3, tolerance=1e-9),
     "matrices, modes apart": Simulated(
         lambda: from_matrices(MASS, 0.03, STIFFNESS, input=0, outputs=ENDS), static=statically(0)

@@ -19,7 +19,7 @@ from preshape import Shaper, design
 from preshape.errors import InputError
 from preshape.kernel import EngineLike, compiled
 from preshape.stream import Stream
-from preshape.stream import stream as module
+from preshape.stream import parts as module
 
 ZV = Shaper([0.0, 0.5], [0.5, 0.5])
 BAD = [math.nan, math.inf, -math.inf, 1e251, -1e300]

@@ -5,7 +5,7 @@ from preshape.design.band import ei_for_band
 from preshape.design.convolved import convolved
 from preshape.design.deflection_limited import deflection_limited
 from preshape.design.derivative import zv, zvd, zvdd, zvdk
-from preshape.design.direct import direct
+from preshape.design.direct import direct, direct_near
 from preshape.design.ei import ei, k_hump_ei, three_hump_ei, two_hump_ei
 from preshape.design.families import CLOSED_FAMILIES, FAMILIES
 from preshape.design.mesh import interpreted, mesh, rounded, solved_from, squashed
@@ -30,6 +30,7 @@ __all__ = [
     "deflection_limited",
     "delayed",
     "direct",
+    "direct_near",
     "ei",
     "ei_for_band",
     "interpreted",

@@ -11,13 +11,20 @@ from collections.abc import Iterable
 from preshape.checks import whole_number
 from preshape.design.each_mode import recorded
 from preshape.design.symmetric import symmetric_two_modes
-from preshape.engine import convolved_positive, preferred, shortest_from, shortest_near, shortest_positive
+from preshape.engine import (
+    Shortest,
+    convolved_positive,
+    preferred,
+    shortest_from,
+    shortest_near,
+    shortest_positive,
+)
 from preshape.errors import InputError
 from preshape.mode import Modes, ModesLike
-from preshape.provenance import Design
+from preshape.provenance import Certificate, Design
 from preshape.shaper import Shaper
 
-__all__ = ["direct"]
+__all__ = ["direct", "direct_near"]
 
 HIGHEST_ORDER = 6
 
@@ -70,16 +77,62 @@ def direct(
     if len(given) != len(wanted):
         raise InputError(f"{len(given)} orders for {len(wanted)} modes: give one number, or one a mode.")
     orders = tuple(whole_number("order", value, 0, HIGHEST_ORDER) for value in given)
-    settings: dict[str, object] = {"order": orders[0] if len(set(orders)) == 1 else list(orders)}
+    settings: dict[str, object] = {"order": _short(orders)}
     found = None
     if near is not None:
-        found = shortest_near(wanted, orders, _checked(near, wanted))
+        _proof_of(near, wanted)
+        found = shortest_near(wanted, orders, near)
         settings["start"] = "full" if found is None else "near"
     closed_form = None if found is not None else _closed_form(wanted, orders)
     if closed_form is not None:
         found = shortest_from(wanted, orders, closed_form)
     if found is None:
         found = shortest_positive(wanted, orders)
+    return _recorded(found, wanted, settings, prefer)
+
+
+def direct_near(near: Shaper, modes: ModesLike) -> Shaper | None:
+    """The direct shaper for modes that have moved a little, by Newton's method alone: bounded work, no search.
+
+    Parameters
+    ----------
+    near : Shaper
+        A direct shaper for as many modes, in the same order; its orders and its preference are kept.
+    modes : Mode, (frequency, damping) or several
+        The modes now: natural frequencies [Hz], damping ratios [-].
+
+    Returns
+    -------
+    Shaper or None
+        Proved shortest as any other; None when Newton's method does not lead to it, as where impulses appear, vanish or
+        merge: then ``direct(modes, order, near=near)`` searches.
+
+    Raises
+    ------
+    InputError
+        If `near` has no certificate for modes, is for another number of them, or a mode is out of range.
+
+    Examples
+    --------
+    >>> shaper = direct([(1.0, 0.0), (2.7, 0.01)])
+    >>> moved = direct_near(shaper, [(1.001, 0.0), (2.703, 0.01)])
+    >>> moved.design.status, moved.design.settings["start"]
+    ('optimal', 'near')
+    """
+    wanted = Modes(modes)
+    orders = _proof_of(near, wanted).orders
+    found = shortest_near(wanted, orders, near)
+    if found is None:
+        return None
+    return _recorded(found, wanted, {"order": _short(orders), "start": "near"}, near.design.settings.get("prefer"))
+
+
+def _short(orders: tuple[int, ...]) -> int | list[int]:
+    return orders[0] if len(set(orders)) == 1 else list(orders)
+
+
+def _recorded(found: Shortest, modes: Modes, settings: dict[str, object], prefer: str | None) -> Shaper:
+    """The shaper with what is known of it."""
     if prefer is not None:
         found = preferred(found, prefer)
         settings["prefer"] = prefer
@@ -87,7 +140,7 @@ def direct(
         settings["gap"] = found.gap
     status = "feasible" if found.certificate is None else "optimal"
     shaper = Shaper.normalised(found.times, found.amplitudes)
-    return recorded(shaper, Design("direct", wanted, settings, status, certificate=found.certificate))
+    return recorded(shaper, Design("direct", modes, settings, status, certificate=found.certificate))
 
 
 def _closed_form(modes: Modes, orders: tuple[int, ...]) -> Shaper | None:
@@ -101,11 +154,11 @@ def _closed_form(modes: Modes, orders: tuple[int, ...]) -> Shaper | None:
     return None
 
 
-def _checked(near: Shaper, modes: Modes) -> Shaper:
-    """A shaper that Newton's method can start from, or a clear refusal."""
+def _proof_of(near: Shaper, modes: Modes) -> Certificate:
+    """The certificate of a shaper that Newton's method can start from, or a clear refusal."""
     proof = near.design.certificate if isinstance(near, Shaper) else None
     if proof is None or proof.modes is None:
         raise InputError(f"near is {near!r}, without a certificate for modes: give a shaper of design.direct.")
     if len(proof.modes) != len(modes):
         raise InputError(f"near was designed for {len(proof.modes)} modes, not {len(modes)}: give one for as many.")
-    return near
+    return proof

@@ -3,6 +3,7 @@
 from preshape.kernel import Extremum
 from preshape.plant.beam import Beam
 from preshape.plant.beam_parts import BeamCoordinate, HingedPayload, Lump
+from preshape.plant.changing_modes import ChangingModes
 from preshape.plant.deflection import (
     DeflectionSensitivity,
     Plant,
@@ -37,6 +38,7 @@ from preshape.plant.state_space import LinearPlant
 __all__ = [
     "Beam",
     "BeamCoordinate",
+    "ChangingModes",
     "DeflectionSensitivity",
     "Diverged",
     "Extremum",

@@ -1,5 +1,7 @@
 """The shaper at work, sample by sample and block by block."""
 
+from preshape.stream.schedule import Schedule
 from preshape.stream.stream import Stream
+from preshape.stream.tracking import Tracked
 
-__all__ = ["Stream"]
+__all__ = ["Schedule", "Stream", "Tracked"]

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import struct
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -37,6 +39,8 @@ class StreamState:
         Delays and weights of the shapers in a row.
     rings : list of list of (bool, bytes)
         For each axis and stage whether it scatters, and the float64 values it remembers.
+    shaper : mapping, optional
+        The one shaper as plain data, for a stream that can track.
     """
 
     dt: float
@@ -44,6 +48,7 @@ class StreamState:
     not_finite: str
     stages: tuple[Taps, ...]
     rings: list[list[tuple[bool, bytes]]]
+    shaper: Mapping[str, Any] | None = None
 
 
 def write_state(state: StreamState) -> bytes:
@@ -54,6 +59,7 @@ def write_state(state: StreamState) -> bytes:
         "not_finite": state.not_finite,
         "taps": [int(delays.size) for delays, _ in state.stages],
         "rings": [[[scattering, len(values) // 8] for scattering, values in axis] for axis in state.rings],
+        "shaper": state.shaper,
     }
     text = json.dumps(description).encode()
     numbers = [np.concatenate([delays.astype(float), weights]) for delays, weights in state.stages]
@@ -88,6 +94,7 @@ def read_state(data: bytes) -> StreamState:
             str(description["not_finite"]),
             tuple((delays.astype(np.uint32), weights) for delays, weights in pairs),
             [[(bool(scattering), next(values).tobytes()) for scattering, _ in axis] for axis in description["rings"]],
+            description["shaper"],
         )
     except (KeyError, TypeError, ValueError, StopIteration):
         raise InputError("the state of the stream does not describe one: give what Stream.state returned.") from None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,15 +9,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from preshape.checks import positive, whole_number
 from preshape.errors import InputError
-from preshape.kernel import EngineLike, ReferenceEngine, Taps, compiled
+from preshape.kernel import Taps
+from preshape.mode import ModesLike
 from preshape.shaper import Shaper
+from preshape.stream.parts import engine_of, numbers, row_of, taps_of
 from preshape.stream.state import StreamState, read_state, write_state
+from preshape.stream.tracking import Tracked, remembered, restored, tracked
 
 __all__ = ["Stream"]
 
-MOST_AXES, MOST_STAGES = 4096, 64
-LARGEST_GAIN = 1e18
-"""The stages' magnitudes multiplied may not exceed this: with the kernel's limit of a sample, nothing overflows."""
+MOST_AXES = 4096
 
 
 class Stream:
@@ -75,11 +75,12 @@ class Stream:
         self._dt = positive("dt", dt, "s")
         self._axes = whole_number("axes", axes, 1, MOST_AXES)
         self._not_finite = not_finite
-        self._build(_taps_of(shaper, self._dt))
+        self._shapers: tuple[Shaper, ...] | None = row_of(shaper)
+        self._build(taps_of(self._shapers, self._dt))
 
     def _build(self, stages: tuple[Taps, ...]) -> None:
         self._stages = stages
-        self._engine = _engine(self._axes, stages, self._not_finite == "pass")
+        self._engine = engine_of(self._axes, stages, self._not_finite == "pass")
         if self._axes == 1:
             self.push = self._engine.push  # type: ignore[method-assign, assignment]  # no detour through Python
 
@@ -101,7 +102,7 @@ class Stream:
         InputError
             If it is not finite (unless these are passed), or not one number an axis.
         """
-        u = _numbers(sample)
+        u = numbers(sample)
         if u.shape != (self._axes,):
             raise InputError(f"the sample has shape {u.shape}: give {self._axes} numbers, one an axis.")
         return self.push_block(u[:, None])[:, 0]
@@ -126,7 +127,7 @@ class Stream:
         InputError
             If a sample is not finite (unless these are passed), or a shape does not fit.
         """
-        u = np.ascontiguousarray(_numbers(samples))
+        u = np.ascontiguousarray(numbers(samples))
         several = u.ndim == 2 and u.shape[0] == self._axes
         if not (several or (u.ndim == 1 and self._axes == 1)):
             wanted = "(time,)" if self._axes == 1 else f"({self._axes}, time)"
@@ -144,7 +145,7 @@ class Stream:
 
     def reset(self, value: ArrayLike = 0.0) -> None:
         """Forget the past: as if `value` (one, or one an axis; the command's unit) had been commanded for ever."""
-        values = _numbers(value)
+        values = numbers(value)
         if values.shape not in ((), (self._axes,)):
             raise InputError(
                 f"the value has shape {values.shape}: give one number, or one for each of {self._axes} axes."
@@ -168,7 +169,8 @@ class Stream:
         InputError
             If it is another number of shapers, or one cannot be used; then nothing has changed.
         """
-        stages = _taps_of(shaper, self._dt)
+        shapers = row_of(shaper)
+        stages = taps_of(shapers, self._dt)
         if len(stages) != len(self._stages):
             raise InputError(
                 f"{len(stages)} shapers were given and the stream has {len(self._stages)} in a row: give as many."
@@ -176,7 +178,48 @@ class Stream:
         for index, (fresh, old) in enumerate(zip(stages, self._stages, strict=True)):
             if len(stages) == 1 or not (np.array_equal(fresh[0], old[0]) and np.array_equal(fresh[1], old[1])):
                 self._engine.retune(index, *fresh)
-        self._stages = stages
+        self._stages, self._shapers = stages, shapers
+
+    def track(self, modes: ModesLike, *, tolerance: float = 0.0, search: bool = True) -> Tracked:
+        """Follow modes that move: design the shaper for them from the one in force, and retune.
+
+        Call it whenever the modes are known anew, as often as every sample; what that gives and what it does not is in
+        docs/how-to/adaptive.md. When nothing has to change it does nothing, and the stream stays bit for bit what it
+        was. Whatever happens, a shaper is in force: a redesign that is not found, or modes that are refused, leave the
+        one before.
+
+        Parameters
+        ----------
+        modes : Mode, (frequency, damping) or several
+            The modes now, as many as the shaper was designed for and in the same order.
+        tolerance : float
+            Mismatch [-] up to which the shaper stays: what an estimator's noise does. See :class:`Tracked`.
+        search : bool
+            What happens where Newton's method does not lead to the new shaper, as where impulses appear or vanish:
+            search for it, which takes milliseconds to a tenth of a second, or keep the one in force and say so.
+
+        Returns
+        -------
+        Tracked
+            The shaper now in force, and how it was found.
+
+        Raises
+        ------
+        InputError
+            If the stream has several shapers in a row, or one that is not from :func:`preshape.design.direct`; if the
+            modes are not as many as its, or not modes, such as NaN. Then nothing has changed.
+
+        Examples
+        --------
+        >>> from preshape import design
+        >>> stream = Stream(design.direct([(1.0, 0.0), (2.7, 0.01)]), dt=0.01)
+        >>> stream.track([(1.001, 0.0), (2.703, 0.01)]).start
+        'near'
+        """
+        found = tracked(self._shapers, modes, tolerance, search)
+        if found.changed:
+            self.retune(found.shaper)
+        return found
 
     @property
     def dt(self) -> float:
@@ -205,7 +248,8 @@ class Stream:
             [(self._engine.scattering(j), self._engine.save(axis, j)) for j in range(len(self._stages))]
             for axis in range(self._axes)
         ]
-        return write_state(StreamState(self._dt, self._axes, self._not_finite, self._stages, rings))
+        shaper = remembered(self._shapers)
+        return write_state(StreamState(self._dt, self._axes, self._not_finite, self._stages, rings, shaper))
 
     @classmethod
     def from_state(cls, state: bytes) -> Stream:
@@ -225,6 +269,7 @@ class Stream:
         saved = read_state(state)
         stream = cls.__new__(cls)
         stream._dt, stream._axes, stream._not_finite = saved.dt, saved.axes, saved.not_finite
+        stream._shapers = restored(saved.shaper, saved.stages, saved.dt)
         stream._build(saved.stages)
         for axis, rings in enumerate(saved.rings):
             for stage, (scattering, values) in enumerate(rings):
@@ -237,36 +282,3 @@ class Stream:
     def __repr__(self) -> str:
         taps = " then ".join(str(delays.size) for delays, _ in self._stages)
         return f"<Stream: {taps} taps, {self._axes} axis(es), dt {self._dt:g} s, latency {self.latency:g} s>"
-
-
-def _engine(axes: int, stages: tuple[Taps, ...], pass_bad: bool) -> EngineLike:
-    if compiled is not None:
-        engine: EngineLike = compiled.Engine(axes, stages, pass_bad)
-        return engine
-    warnings.warn(
-        "preshape was installed without a C compiler: streams run on NumPy, to the same bits but slower",
-        RuntimeWarning,
-        stacklevel=1,
-    )
-    return ReferenceEngine(axes, stages, pass_bad)
-
-
-def _taps_of(shaper: Shaper | Sequence[Shaper], dt: float) -> tuple[Taps, ...]:
-    """The stages on the grid."""
-    shapers = [shaper] if isinstance(shaper, Shaper) else shaper
-    if not isinstance(shapers, Sequence) or not all(isinstance(one, Shaper) for one in shapers):
-        raise InputError(f"{shaper!r} is no shaper: give a Shaper, or a list of them.")
-    if not 1 <= len(shapers) <= MOST_STAGES:
-        raise InputError(f"{len(shapers)} shapers were given: give 1 to {MOST_STAGES} in a row.")
-    gain = float(np.prod([one.magnitude for one in shapers]))
-    if not gain <= LARGEST_GAIN:
-        raise InputError(f"these shapers in a row may amplify by {gain:g}: up to {LARGEST_GAIN:g} is allowed.")
-    taps = [one.taps(dt) for one in shapers]
-    return tuple((delays.astype(np.uint32), np.ascontiguousarray(weights)) for delays, weights in taps)
-
-
-def _numbers(values: ArrayLike) -> NDArray[np.float64]:
-    try:
-        return np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"{values!r} is not made of numbers.") from None

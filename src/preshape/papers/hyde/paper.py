@@ -11,6 +11,8 @@ from preshape.papers.hyde import (
     chapter5_mace,
     chapter5_mace_figures,
     chapter5_slews,
+    chapter6,
+    chapter6_figures,
     convolution,
     exact,
     lengths,
@@ -44,12 +46,13 @@ def _contents() -> tuple[list[Row], list[Figure]]:
         figures += chapter5_mace_figures.figures(done)
     else:
         rows += chapter5_mace.left_out()
-    return rows, figures
+    following = chapter6.adaptive(chapter5_slews.installed())
+    return [*rows, *chapter6.rows(following)], [*figures, *chapter6_figures.figures(following)]
 
 
 HYDE = Paper(
     "hyde",
     "J. M. Hyde, Multiple Mode Vibration Suppression in Controlled Flexible Systems, MIT AI-TR 1295, 1991: "
-    "chapters 2, 3 and 5",
+    "chapters 2, 3, 5 and 6",
     _contents,
 )
