@@ -66,8 +66,9 @@ class Slave:
 
     def step(self, command: float, samples: int = 1) -> float:
         self.fmu.setFloat64([COMMAND], [command])
-        self.fmu.doStep(self.time, samples * self.dt)
+        events = self.fmu.doStep(self.time, samples * self.dt)
         self.time += samples * self.dt
+        assert events == (False, False, False, self.time), "no event, no end, no early return; and where it is now"
         return self.shaped
 
     def shape(self, command: NDArray[np.float64]) -> list[float]:

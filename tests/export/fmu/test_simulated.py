@@ -187,6 +187,7 @@ def test_calls_out_of_order_and_unknown_variables_are_errors(slave: Make) -> Non
         fresh.fmu.enterEventMode,
         lambda: fresh.fmu.getDirectionalDerivative([SHAPED], [COMMAND], [1.0]),
         lambda: fresh.started().fmu.setFloat64([INITIAL], [1.0]),
+        lambda: fresh.fmu.setBoolean([PASS], [True]),
         fresh.fmu.enterInitializationMode,
     ]
     for number, call in enumerate(calls):

@@ -160,7 +160,9 @@ def test_what_is_not_finite_is_refused_and_poisons_nothing(bad: float | str, pre
     assert first + shaped(instance, command[50:]) == clean
     assert not instance.Error and instance.ErrorID == 0
     instance.call(Enable=False, Command=value)
-    assert instance.Shaped == clean[-1]
+    assert (instance.Shaped, instance.ErrorID) == (clean[-1], 1)
+    assert (instance.call(Command=5.0).Shaped, instance.ErrorID) == (5.0, 0)
+    instance.call(Command=value)
     assert instance.call(Enable=True, Command=6.0).Shaped == 6.0, "disabled while refused is disabled"
 
 
