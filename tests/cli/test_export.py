@@ -12,7 +12,7 @@ from tests.tools import needed, succeeded
 
 from preshape import Shaper, design
 from preshape.cli.main import preshape as command_line
-from preshape.export import TARGETS
+from preshape.export import TARGETS, Target
 
 SHAPER = design.zvd([(8.7, 0.024), (31.0, 0.01)])
 
@@ -48,13 +48,26 @@ def test_the_screen_says_what_was_written_what_it_costs_and_what_comes_next() ->
 
 
 def test_every_target_of_the_list_can_be_exported() -> None:
-    listed = said("--list")
+    listed = " ".join(said("--list").split())
+    design.zvd((41.0, 0.05)).save("small.json")
     for target in TARGETS.values():
-        assert target.name in listed and f"{target.limits.taps}" in listed
+        assert f"{target.name} {target.summary}" in listed
         for version in target.versions:
             assert version in listed
-            text = said(f"{target.name} shaper.json --rate 1000 --out {target.name} --target-version {version}")
+            given = "shaper.json --rate 1000" if isinstance(target, Target) else "small.json"
+            text = said(f"{target.name} {given} --out {target.name} --target-version {version}")
             assert f"target {target.name} ({version})" in text
+
+
+def test_a_setting_is_shown_with_what_it_leaves_and_what_the_shaper_would() -> None:
+    design.direct([(40.0, 0.05), (63.0, 0.04)], order=0).save("two.json")
+    text = " ".join(said("klipper two.json --axis x --out a --name bed").split())
+    assert "a/bed.cfg" in text and "nearest setting is mzv(n=5,t=1.1) at 40.80 Hz" in text
+    assert "It executes mzv: 5 impulses" in text and "target klipper (2026-03), x" in text
+    assert "40 Hz, damping 0.05 0.99 %" in text
+    assert "shaper_freq_x: 40.80" in Path("a/bed.cfg").read_text()
+    assert "damping_ratio: keep these lines" in text
+    assert "not say its modes" in said("rrf given.json --out b")
 
 
 def test_what_a_user_should_know_is_said() -> None:
@@ -84,7 +97,11 @@ def test_the_method_of_the_grid_is_taken() -> None:
         ("c none.json --rate 1000 --out a", "cannot read none.json"),
         ("c shaper.json --rate 0 --out a", "--rate is 0 Hz"),
         ("c shaper.json --rate nan --out a", "--rate is nan"),
-        ("c shaper.json --out a", "Missing option '--rate'"),
+        ("c shaper.json --out a", "target c works on samples of one axis: say the sample rate"),
+        ("c shaper.json --rate 1000 --axis x --out a", "leave the axis out"),
+        ("rrf shaper.json --rate 1000 --out a", "target rrf has no sample grid: leave the sample rate"),
+        ("rrf shaper.json --out a", "9 impulses and target rrf (3.6) holds 5"),
+        ("klipper given.json --out a", "export it to klipper-plugin, which takes impulses"),
         ("c shaper.json --rate 1000", "Missing option '--out'"),
         ("c --rate 1000 --out a", "Missing argument 'SHAPER.json'"),
         ("c shaper.json --rate 1000 --out a --name Ö", "cannot be used"),

@@ -1,4 +1,4 @@
-"""`preshape export TARGET SHAPER.json --rate HZ --out FOLDER`"""
+"""`preshape export TARGET SHAPER.json [--rate HZ] --out FOLDER`"""
 
 from __future__ import annotations
 
@@ -23,7 +23,12 @@ def _show_targets(ctx: click.Context, parameter: click.Parameter, value: bool) -
 )
 @click.argument("target", metavar="TARGET")
 @click.argument("shaper", type=click.Path(path_type=Path), metavar="SHAPER.json")
-@click.option("--rate", type=float, required=True, metavar="HZ", help="Samples per second of the controller.")
+@click.option(
+    "--rate", type=float, metavar="HZ", help="Samples per second of the controller, for a target that works on samples."
+)
+@click.option(
+    "--axis", type=click.Choice(["x", "y", "z"]), help="For a target with settings for each.  [default: x and y alike]"
+)
 @click.option(
     "--out", type=click.Path(file_okay=False, path_type=Path), required=True, metavar="FOLDER", help="Where to."
 )
@@ -42,7 +47,8 @@ def _show_targets(ctx: click.Context, parameter: click.Parameter, value: bool) -
 def command(
     target: str,
     shaper: Path,
-    rate: float,
+    rate: float | None,
+    axis: str | None,
     out: Path,
     name: str,
     target_version: str | None,
@@ -58,6 +64,8 @@ def command(
     preshape export c shaper.json --rate 1000 --out firmware --name gantry_x
     preshape export c shaper.json --rate 1000 --out firmware --precision single
     preshape export linuxcnc shaper.json --rate 1000 --out hal --target-version master
+    preshape export klipper shaper.json --axis x --out printer
+    preshape export rrf shaper.json --out printer --target-version 3.5
     """
     from preshape.checks import positive
     from preshape.cli.export_screen import export_screen
@@ -65,13 +73,8 @@ def command(
     from preshape.shaper import Shaper
     from preshape.workflow import save_export
 
+    dt = None if rate is None else 1.0 / positive("--rate", rate, "Hz")
     exported = render(
-        Shaper.load(shaper),
-        target,
-        dt=1.0 / positive("--rate", rate, "Hz"),
-        name=name,
-        version=target_version,
-        precision=precision,
-        grid=grid,
+        Shaper.load(shaper), target, dt=dt, name=name, version=target_version, precision=precision, grid=grid, axis=axis
     )
     export_screen(exported, save_export(exported, out, force=force))

@@ -6,32 +6,66 @@ from rich.table import Table
 from rich.text import Text
 
 from preshape.cli.screens import console
-from preshape.export import TARGETS, Exported
+from preshape.export import TARGETS, Exported, ExportedSettings, SettingsTarget, Target
 from preshape.workflow import SavedExport
 
-__all__ = ["export_screen", "target_table"]
+__all__ = ["export_screen", "held_by", "target_table"]
 
 
 def target_table() -> None:
     """Every target with its versions and limits."""
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), show_header=False)
     for target in TARGETS.values():
-        limits = target.limits
         table.add_row(Text(target.name, style="bold cyan"), target.summary)
-        table.add_row(
-            "",
-            Text(
-                f"version {' or '.join(target.versions)}; {' or '.join(limits.precisions)} precision; at most "
-                f"{limits.taps} taps, {limits.samples} samples long{'' if limits.negative else '; no negative taps'}",
-                style="dim",
-            ),
-        )
+        table.add_row("", Text(f"version {' or '.join(target.versions)}; holds {held_by(target)}", style="dim"))
     screen = console()
     screen.print(table)
-    screen.print("\nThe first version and precision named are the defaults.")
+    screen.print("\nThe first version and precision named are the defaults. Targets that hold taps need --rate.")
 
 
-def export_screen(exported: Exported, saved: SavedExport) -> None:
+def held_by(target: Target | SettingsTarget) -> str:
+    """What a target holds; where versions differ, each of them."""
+    if isinstance(target, Target) or not target.other_limits:
+        return str(target.limits)
+    return "; ".join(f"{version}: {target.limits_of(version)}" for version in target.versions)
+
+
+def export_screen(exported: Exported | ExportedSettings, saved: SavedExport) -> None:
+    """The files, the shaper as the controller runs it, the next step."""
+    if isinstance(exported, Exported):
+        _samples_screen(exported, saved)
+    else:
+        _settings_screen(exported, saved)
+
+
+def _settings_screen(exported: ExportedSettings, saved: SavedExport) -> None:
+    """The files, what the controller executes and leaves, beside what was asked for."""
+    screen = console()
+    placed = exported.placed
+    axes = f", {' and '.join(placed.axes)}" if placed.axes else ""
+    heading = f"{placed.name}: {placed.asked.design.family}, target {exported.target.name} ({placed.version}){axes}"
+    screen.print(Text(heading, style="bold"))
+    for path in saved.files:
+        screen.print(f"  {path}", soft_wrap=True)
+    for note in placed.notes:
+        screen.print(note)
+    does = placed.shaper
+    screen.print(f"\nIt executes {does.design.family}: {does.parts} in {1e3 * does.duration:.6g} ms.")
+    if placed.asked.design.modes is None:
+        screen.print("what it leaves of the vibration is not known: the shaper's file does not say its modes")
+    else:
+        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+        for title in ("mode", "it leaves", "the shaper leaves"):
+            table.add_column(title, justify="left" if title == "mode" else "right")
+        for mode, (left, asked) in zip(placed.asked.design.modes, placed.residuals, strict=True):
+            table.add_row(str(mode), f"{100.0 * left:.2g} %", f"{100.0 * asked:.2g} %")
+        screen.print(table)
+    screen.print()
+    for line in exported.target.next_step(placed):
+        screen.print(line, soft_wrap=True)
+
+
+def _samples_screen(exported: Exported, saved: SavedExport) -> None:
     """The files, the shaper on the controller's grid, the next step."""
     screen = console()
     placed, design = exported.placed, exported.placed.shaper.design

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from rich.console import Console
 from rich.table import Table
@@ -13,9 +14,9 @@ from preshape.engine import is_proved_shortest
 from preshape.report import Calibration, TextTable, candidate_table, exclusion_sentence, klipper_sentence, mode_table
 from preshape.shaper import Shaper
 from preshape.vibration import high_frequency_gain
-from preshape.workflow import Analysis
+from preshape.workflow import Analysis, SpectrumLeft
 
-__all__ = ["analysis_screen", "calibration_screen", "console", "shaper_screen"]
+__all__ = ["analysis_screen", "calibration_screen", "console", "shaper_screen", "spectrum_screen"]
 
 FULL_WIDTH = 110
 """Columns assumed when the output is not a terminal, so that a table in a log file is not folded."""
@@ -98,6 +99,18 @@ def analysis_screen(analysis: Analysis) -> None:
             f"{row.total_insensitivity:.4f}",
         )
     screen.print(table)
+
+
+def spectrum_screen(left: Sequence[SpectrumLeft]) -> None:
+    """What is left of measured vibration."""
+    if not left:
+        return
+    table = Table(title="\nOf what was measured", title_justify="left", title_style="bold", box=None, pad_edge=False)
+    for title in ("measurement", "left, by Klipper's measure [%]", "amplitude left, 5 % off [%]"):
+        table.add_column(title, justify="left" if title == "measurement" else "right")
+    for one in left:
+        table.add_row(one.name, f"{100.0 * one.by_klipper:.1f}", f"{100.0 * one.amplitude:.1f}")
+    console().print(table)
 
 
 def _rich_table(title: str, table: TextTable, styles: list[str | None], left: int = 1) -> Table:

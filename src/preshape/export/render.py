@@ -1,10 +1,11 @@
-"""From a shaper to a target's files: placed on the grid, checked against the target's limits, written."""
+"""From a shaper to a target's files: placed on its grid or put into its words, checked against its limits, written."""
 
 from __future__ import annotations
 
 import math
 import re
 from dataclasses import replace
+from typing import overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,8 @@ from numpy.typing import NDArray
 from preshape.checks import positive
 from preshape.design.on_grid import on_grid
 from preshape.errors import InputError
+from preshape.export.configure import ExportedSettings, configured_for
+from preshape.export.settings_target import SettingsTarget
 from preshape.export.target import Exported, Placed, Target
 from preshape.export.targets import TARGETS
 from preshape.shaper import Shaper
@@ -28,16 +31,59 @@ LARGEST_SUM = 1e6
 """Most that the sizes of the weights may sum to: what the kernel takes."""
 
 
+@overload
 def render(
     shaper: Shaper,
     target: str,
     *,
     dt: float,
+    name: str = ...,
+    version: str | None = ...,
+    precision: str | None = ...,
+    grid: str | None = ...,
+    axis: None = ...,
+) -> Exported: ...
+
+
+@overload
+def render(
+    shaper: Shaper,
+    target: str,
+    *,
+    dt: None = ...,
+    name: str = ...,
+    version: str | None = ...,
+    precision: None = ...,
+    grid: None = ...,
+    axis: str | None = ...,
+) -> ExportedSettings: ...
+
+
+@overload
+def render(
+    shaper: Shaper,
+    target: str,
+    *,
+    dt: float | None,
+    name: str = ...,
+    version: str | None = ...,
+    precision: str | None = ...,
+    grid: str | None = ...,
+    axis: str | None = ...,
+) -> Exported | ExportedSettings: ...
+
+
+def render(
+    shaper: Shaper,
+    target: str,
+    *,
+    dt: float | None = None,
     name: str = "shaper",
     version: str | None = None,
     precision: str | None = None,
     grid: str | None = None,
-) -> Exported:
+    axis: str | None = None,
+) -> Exported | ExportedSettings:
     """A shaper as the files that somebody else's controller takes.
 
     Parameters
@@ -47,7 +93,7 @@ def render(
     target : str
         For whom: a name of :data:`preshape.export.TARGETS`.
     dt : float
-        Sample time of the controller [s].
+        Sample time of the controller [s], for a target that works on samples; left out for one that takes settings.
     name : str
         What files and identifiers are called: a lower-case letter and up to 30 lower-case letters, digits, underscores.
     version : str, optional
@@ -57,10 +103,12 @@ def render(
     grid : str, optional
         How impulses between samples are placed, a method of :func:`preshape.design.on_grid`; by default "exact", or
         "linear" for a shaper that does not know its modes.
+    axis : str, optional
+        "x", "y" or "z", for a target that takes settings for each axis; by default x and y are set alike.
 
     Returns
     -------
-    Exported
+    Exported or ExportedSettings
         The files, and in ``placed`` the shaper that the controller will run and the residuals it leaves at each mode.
 
     Raises
@@ -75,17 +123,26 @@ def render(
     >>> exported = render(preshape.design.zv((40.0, 0.0)), "c", dt=0.001, name="gantry_x")
     >>> list(exported.files)[2:], exported.placed.latency_samples
     (['gantry_x.h', 'gantry_x.c', 'gantry_x_selftest.c'], 13)
+    >>> mzv = preshape.design.mzv((50.0, 0.1))
+    >>> print(str(render(mzv, "rrf", version="3.6").files["shaper.g"]).splitlines()[-1])
+    M593 P"custom" H0.365128:0.407489 T0.0075378:0.0150756
     """
     if target not in TARGETS:
         raise InputError(f"target {target!r} is not known: it is {', '.join(TARGETS)}.")
     chosen = TARGETS[target]
     version = _one_of("version", version, chosen.versions, target)
-    precision = _one_of("precision", precision, chosen.limits.precisions, target)
     if not (isinstance(name, str) and NAME.fullmatch(name)) or name.startswith(TAKEN):
         raise InputError(
             f"name {name!r} cannot be used in every language: give a lower-case letter and up to 30 lower-case "
             f"letters, digits or underscores, which do not begin with {TAKEN}."
         )
+    if isinstance(chosen, SettingsTarget):
+        if not (dt is None and precision is None and grid is None):
+            raise InputError(f"target {target} has no sample grid: leave the sample rate, precision and grid out.")
+        return configured_for(shaper, chosen, version, name, axis)
+    if dt is None or axis is not None:
+        raise InputError(f"target {target} works on samples of one axis: say the sample rate, and leave the axis out.")
+    precision = _one_of("precision", precision, chosen.limits.precisions, target)
     placed = _placed(shaper, positive("dt", dt, "s"), grid, name, precision, version)
     _check(chosen, placed)
     files = chosen.render(placed)
@@ -128,11 +185,11 @@ def _one_of(what: str, given: str | None, allowed: tuple[str, ...], target: str)
 def _check(target: Target, placed: Placed) -> None:
     limits, taps = target.limits, placed.delays.size
     at = f"at dt = {placed.dt:g} s and target {target.name} holds"
-    if taps > limits.taps:
+    if limits.taps is not None and taps > limits.taps:
         raise InputError(
             f"the shaper has {taps} taps {at} {limits.taps}: design one with fewer impulses, or sample less often."
         )
-    if placed.latency_samples > limits.samples:
+    if limits.samples is not None and placed.latency_samples > limits.samples:
         raise InputError(
             f"the shaper is {placed.latency_samples} samples long {at} {limits.samples}: sample less often."
         )

@@ -1,7 +1,13 @@
-"""What a target of an export is: what it accepts, how it is written, and how it is read back."""
+"""What a target of an export is: what it accepts, how it is written, and how it is read back.
+
+There are two kinds. A :class:`Target` works on samples: the shaper is put on its grid, and what is written is read back
+bit for bit. A :class:`preshape.export.SettingsTarget` takes settings in its own words: there the shaper that counts is
+what the controller makes of them.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
@@ -22,20 +28,46 @@ class Limits:
 
     Parameters
     ----------
-    taps : int
-        Most taps on the grid, or impulses of a target without a grid.
-    samples : int
-        Longest delay [samples].
+    taps : int or None
+        Most taps on the grid, or impulses of a target without a grid; None: any number.
+    samples : int or None
+        Longest delay [samples]; None for a target without a grid.
     precisions : tuple of str
         "double", "single" or both, the default first.
     negative : bool
         Whether weights may be negative.
+    shortest, longest : float
+        Durations [s] that a target without a grid takes.
+    smallest : float
+        Least size of an impulse [-].
+    resolution : str
+        How finely what fits is held, in words.
     """
 
-    taps: int
-    samples: int
+    taps: int | None
+    samples: int | None = None
     precisions: tuple[str, ...] = ("double",)
     negative: bool = True
+    shortest: float = 0.0
+    longest: float = math.inf
+    smallest: float = 0.0
+    resolution: str = "every bit"
+
+    def __str__(self) -> str:
+        """What fits, in a line."""
+        parts = []
+        if self.samples is not None:
+            parts += [f"{self.taps} taps" if self.taps else "any taps", f"delays up to {self.samples} samples"]
+            parts.append(" or ".join(self.precisions))
+        elif self.taps is not None:
+            parts.append(f"{self.taps} impulses")
+        if self.shortest > 0.0 or self.longest < math.inf:
+            parts.append(f"{self.shortest:g} to {self.longest:g} s")
+        if self.smallest > 0.0:
+            parts.append(f"none below {self.smallest:g}")
+        if not self.negative:
+            parts.append("positive ones")
+        return ", ".join([*parts, self.resolution])
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from preshape.workflow.analyze import Analysis, ModeAnalysis, analyze
 from preshape.workflow.calibrate import calibrate
 from preshape.workflow.compare import compare
+from preshape.workflow.executed import SpectrumLeft, executed_shaper, left_of_spectrum
 from preshape.workflow.identify_plant import identify_plant
 from preshape.workflow.read_command import read_command
 from preshape.workflow.save import SavedCalibration, save_calibration
@@ -20,10 +21,13 @@ __all__ = [
     "SavedCalibration",
     "SavedExport",
     "ShapedFile",
+    "SpectrumLeft",
     "analyze",
     "calibrate",
     "compare",
+    "executed_shaper",
     "identify_plant",
+    "left_of_spectrum",
     "read_command",
     "save_calibration",
     "save_export",

@@ -15,9 +15,9 @@ from preshape.mode import Mode, Modes
 from preshape.report import Candidate
 from preshape.shaper import Shaper
 from preshape.workflow.remaining import (
+    DEFAULT_DAMPING,
     Lines,
-    lines_of_modes,
-    lines_of_spectra,
+    lines_to_still,
     remaining_amplitude,
     remaining_amplitudes,
 )
@@ -43,9 +43,6 @@ SEVERAL: dict[str, Callable[[Modes], Shaper]] = {
     "direct zvd": lambda modes: design.direct(modes, 1),
 }
 """All identified modes at once."""
-
-DEFAULT_DAMPING = 0.1
-"""What is assumed [-] when no mode was found and none is given; Klipper assumes the same."""
 
 SEARCH_FACTORS = (0.6, 2.5)
 """Families are tuned from this multiple of the lowest loud frequency to this multiple of the highest."""
@@ -75,7 +72,7 @@ def designed_candidates(
     A family that does not exist at this damping (EI has a limit) is left out; one with more impulses than the
     controller holds is kept and marked, so that the user sees what the limit costs.
     """
-    lines = _lines(spectra, modes, clear, damping)
+    lines = lines_to_still(spectra, modes, clear, damping)
     ratio = damping if damping is not None else modes[0].mode.damping if modes else DEFAULT_DAMPING
 
     def candidate(name: str, shaper: Shaper) -> Candidate:
@@ -101,15 +98,6 @@ def designed_candidates(
         wanted = Modes([mode.mode for mode in modes])
         for name, family_of_several in SEVERAL.items():
             yield candidate(name, family_of_several(wanted))
-
-
-def _lines(
-    spectra: Sequence[klipper.Spectrum], modes: Sequence[IdentifiedMode], clear: bool, damping: float | None
-) -> list[Lines]:
-    """What a shaper has to still: the modes where they can be trusted, or else everything that was measured."""
-    if clear and modes:
-        return lines_of_modes(modes)
-    return lines_of_spectra(spectra, DEFAULT_DAMPING if damping is None else damping)
 
 
 def _search_grid(lines: Sequence[Lines], clear: bool) -> NDArray[np.float64]:

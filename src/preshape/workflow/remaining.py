@@ -14,7 +14,18 @@ from preshape.report import FREQUENCY_ERROR
 from preshape.shaper import Shaper
 from preshape.vibration import residual_vibration
 
-__all__ = ["Lines", "lines_of_modes", "lines_of_spectra", "remaining_amplitude", "remaining_amplitudes"]
+__all__ = [
+    "DEFAULT_DAMPING",
+    "Lines",
+    "lines_of_modes",
+    "lines_of_spectra",
+    "lines_to_still",
+    "remaining_amplitude",
+    "remaining_amplitudes",
+]
+
+DEFAULT_DAMPING = 0.1
+"""What is assumed [-] when no mode was found and none is given; Klipper assumes the same."""
 
 FLOOR = 1.0 / 20.0
 """Power below this fraction of the highest peak is noise or motion of the whole machine, and does not count."""
@@ -30,6 +41,15 @@ class Lines:
     frequencies: NDArray[np.float64]
     dampings: NDArray[np.float64]
     weights: NDArray[np.float64]
+
+
+def lines_to_still(
+    spectra: Sequence[klipper.Spectrum], modes: Sequence[IdentifiedMode], clear: bool, damping: float | None = None
+) -> list[Lines]:
+    """What a shaper has to still: the modes where they can be trusted, or else everything that was measured."""
+    if clear and modes:
+        return lines_of_modes(modes)
+    return lines_of_spectra(spectra, DEFAULT_DAMPING if damping is None else damping)
 
 
 def lines_of_modes(modes: Sequence[IdentifiedMode]) -> list[Lines]:

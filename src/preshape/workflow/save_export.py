@@ -18,7 +18,7 @@ from pathlib import Path
 import msgspec
 
 from preshape.errors import InputError
-from preshape.export import Exported
+from preshape.export import Exported, ExportedSettings
 from preshape.files import write_atomically
 
 __all__ = ["SavedExport", "save_export"]
@@ -46,12 +46,14 @@ class _Memory(msgspec.Struct):
     files: dict[str, str]
 
 
-def save_export(exported: Exported, folder: str | os.PathLike[str], *, force: bool = False) -> SavedExport:
+def save_export(
+    exported: Exported | ExportedSettings, folder: str | os.PathLike[str], *, force: bool = False
+) -> SavedExport:
     """Write the files of an export into `folder`, which is made if it does not exist.
 
     Parameters
     ----------
-    exported : Exported
+    exported : Exported or ExportedSettings
         From :func:`preshape.export.render`.
     folder : path
         Where to. Several exports may share it.

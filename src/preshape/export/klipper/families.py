@@ -16,6 +16,12 @@ from numpy.typing import ArrayLike
 
 from preshape.checks import tolerance_of
 from preshape.errors import InputError
+from preshape.export.damped_humps import (
+    THREE_HUMP_AMPLITUDES,
+    THREE_HUMP_TIMES,
+    TWO_HUMP_AMPLITUDES,
+    TWO_HUMP_TIMES,
+)
 from preshape.mode import Mode, Modes
 from preshape.provenance import Design
 from preshape.shaper import Shaper
@@ -30,18 +36,6 @@ MOST_IMPULSES = 10
 
 NEGATIVE_AMPLITUDE = 1e-5
 """Klipper refuses a generalised MZV with an amplitude below minus this."""
-
-# Damped two- and three-hump EI for a tolerance of 5 %: coefficients of 1, z, z^2, z^3 (LITERATURE 2.2); times in
-# undamped periods. The amplitudes sum to 1 only to about 5e-4, hence they are normalised.
-_TWO_HUMP_TIMES = ((0.49890, 0.16270, -0.54262, 6.16180), (0.99748, 0.18382, -1.58270, 8.17120),
-                   (1.49920, -0.09297, -0.28338, 1.85710))  # fmt: skip
-_TWO_HUMP_AMPLITUDES = ((0.16054, 0.76699, 2.26560, -1.22750), (0.33911, 0.45081, -2.58080, 1.73650),
-                        (0.34089, -0.61533, -0.68765, 0.42261), (0.15997, -0.60246, 1.00280, -0.93145))  # fmt: skip
-_THREE_HUMP_TIMES = ((0.49974, 0.23834, 0.44559, 12.4720), (0.99849, 0.29808, -2.36460, 23.3990),
-                     (1.49870, 0.10306, -2.01390, 17.0320), (1.99960, -0.28231, 0.61536, 5.40450))  # fmt: skip
-_THREE_HUMP_AMPLITUDES = ((0.11275, 0.76632, 3.29160, -1.44380), (0.23698, 0.61164, -2.57850, 4.85220),
-                          (0.30008, -0.19062, -2.14560, 0.13744), (0.23775, -0.73297, 0.46885, -2.08650),
-                          (0.11244, -0.45439, 0.96382, -1.46000))  # fmt: skip
 
 
 def zv(frequency: float, damping: float = DEFAULT_DAMPING) -> Shaper:
@@ -181,7 +175,7 @@ def two_hump_ei(frequency: float, damping: float = DEFAULT_DAMPING) -> Shaper:
     4
     """
     mode = _mode("2hump_ei", frequency, damping)
-    return _fitted("2hump_ei", mode, _TWO_HUMP_TIMES, _TWO_HUMP_AMPLITUDES)
+    return _fitted("2hump_ei", mode, TWO_HUMP_TIMES, TWO_HUMP_AMPLITUDES)
 
 
 def three_hump_ei(frequency: float, damping: float = DEFAULT_DAMPING) -> Shaper:
@@ -195,7 +189,7 @@ def three_hump_ei(frequency: float, damping: float = DEFAULT_DAMPING) -> Shaper:
     5
     """
     mode = _mode("3hump_ei", frequency, damping)
-    return _fitted("3hump_ei", mode, _THREE_HUMP_TIMES, _THREE_HUMP_AMPLITUDES)
+    return _fitted("3hump_ei", mode, THREE_HUMP_TIMES, THREE_HUMP_AMPLITUDES)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,90 @@
+"""python-control: the shaper on samples as a transfer function in z, and its frequency response as data."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from preshape.errors import InputError
+from preshape.export.c_source import modes_left, text_of, title
+from preshape.export.target import Files, Limits, Placed, Target
+from preshape.shaper import Shaper
+
+__all__ = ["PYTHON_CONTROL"]
+
+TEMPLATE = '''
+DT = {dt!r}  # seconds
+DELAYS = [{delays}]  # samples
+WEIGHTS = [
+{weights}
+]
+
+
+def fir():
+    """The shaper as a transfer function in z, a python-control TransferFunction."""
+    import control
+
+    numerator = [0.0] * (DELAYS[-1] + 1)
+    for delay, weight in zip(DELAYS, WEIGHTS):
+        numerator[delay] = weight
+    return control.tf(numerator, [1.0] + [0.0] * DELAYS[-1], DT)
+
+
+def response(omega):
+    """Its frequency response at the frequencies omega [rad/s], as a python-control FrequencyResponseData."""
+    import control
+    import numpy as np
+
+    w = np.asarray(omega, dtype=float)
+    values = np.exp(-1j * np.multiply.outer(w * DT, DELAYS)) @ np.asarray(WEIGHTS)
+    return control.frd(values, w)
+'''
+
+MOST = 10_000
+PERIOD = re.compile(r"^DT = (\S{1,30})  # seconds$", re.MULTILINE)
+DELAYS = re.compile(r"^DELAYS = \[([0-9, ]*)\]  # samples$", re.MULTILINE)
+WEIGHTS = re.compile(r"^WEIGHTS = \[\n([-+0-9.e, \n]*)\]$", re.MULTILINE)
+
+
+def _render(placed: Placed) -> Files:
+    head = "".join(f"# {line}\n" for line in (title(placed), *modes_left(placed)))
+    body = TEMPLATE.format(
+        dt=placed.dt,
+        delays=", ".join(map(str, placed.delays.tolist())),
+        weights="\n".join(f"    {weight!r}," for weight in placed.weights.tolist()),
+    )
+    return {f"{placed.name}.py": head + body}
+
+
+def _parse(files: Files) -> Shaper:
+    text = text_of(files, ".py")
+    found = [pattern.findall(text) for pattern in (PERIOD, DELAYS, WEIGHTS)]
+    if any(len(one) != 1 for one in found):
+        raise InputError(
+            "the file does not hold DT, DELAYS and WEIGHTS once each: give one that preshape export wrote."
+        )
+    try:
+        dt = float(found[0][0])
+        delays = [int(word) for word in found[1][0].split(",")]
+        weights = [float(word) for word in found[2][0].split(",") if word.strip()]
+    except ValueError:
+        raise InputError("the file holds something that is no number: give one that preshape export wrote.") from None
+    if len(delays) != len(weights) or len(delays) > MOST or max(delays) > 1 << 31:
+        raise InputError(f"{len(delays)} delays and {len(weights)} weights: give as many, up to {MOST}.")
+    return Shaper(np.array(delays) * np.float64(dt), weights)
+
+
+def _next_step(placed: Placed) -> tuple[str, ...]:
+    return (f"import {placed.name}; {placed.name}.fir() is a TransferFunction, {placed.name}.response(omega) its FRD.",)
+
+
+PYTHON_CONTROL = Target(
+    "python-control",
+    "a module with the shaper as transfer function and frequency response for python-control",
+    ("0.10",),
+    Limits(taps=MOST, samples=1 << 20),
+    _render,
+    _parse,
+    _next_step,
+)
