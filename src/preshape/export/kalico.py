@@ -19,8 +19,8 @@ CUSTOM = "bleeding-edge-v2"
 
 FAMILIES = {CUSTOM: KLIPPER["2025-09"], "main": KLIPPER["old"]}
 
-LIMITS = Limits(taps=5, shortest=0.001, longest=0.2, smallest=0.001, resolution="9 digits")
-MAIN = Limits(taps=None, resolution="a family; 0.01 Hz, damping 0.0001")
+LIMITS = Limits(taps=5, shortest=0.001, longest=0.2, smallest=0.001, resolution="to 9 digits")
+MAIN = Limits(taps=None, resolution="a family, frequency to 0.01 Hz, damping to 0.0001")
 
 
 def _execute(text: str, version: str, axis: str | None = None) -> Shaper:

@@ -185,7 +185,7 @@ CLASSIC = SettingsTarget(
     "marlin",
     "M593 for Marlin's standard motion: a ZV",
     ("2.1",),
-    Limits(taps=None, resolution="amplitude 1/128; a frequency of 0.01 Hz"),
+    Limits(taps=None, resolution="a ZV, amplitudes to 1/128, frequency to 0.01 Hz"),
     _write_classic,
     _execute_classic,
     ".g",

@@ -113,7 +113,7 @@ PRUSA = SettingsTarget(
     "prusa",
     "M593 for Prusa's Buddy firmware: the nearest of its families",
     tuple(RANGES),
-    Limits(taps=None, resolution="a family; 0.01 Hz, damping 0.0001"),
+    Limits(taps=None, resolution="a family, frequency to 0.01 Hz, damping to 0.0001"),
     _write,
     _execute,
     ".g",

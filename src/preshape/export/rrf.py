@@ -37,7 +37,7 @@ MOST_EXTRA = 4
 """Values that H and T hold; the last impulse follows from the others."""
 
 HIGHEST_FREQUENCY = 1000.0
-LIMITS = Limits(taps=MOST_EXTRA + 1, resolution="amplitude 1e-6; 1.33 µs")
+LIMITS = Limits(taps=MOST_EXTRA + 1, resolution="amplitudes to 1e-6, times to 1.33 µs")
 
 DEFAULT_FREQUENCY = 40.0
 

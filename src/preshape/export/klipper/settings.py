@@ -117,7 +117,7 @@ KLIPPER = SettingsTarget(
     "klipper",
     "[input_shaper] for Klipper: the nearest of its families, with damping_ratio",
     tuple(VERSIONS),
-    Limits(taps=None, negative=True, resolution="a family; 0.01 Hz, damping 0.0001"),
+    Limits(taps=None, negative=True, resolution="a family, frequency to 0.01 Hz, damping to 0.0001"),
     _write,
     execute,
     ".cfg",

@@ -21,7 +21,7 @@ __all__ = ["PLUGIN"]
 
 MODULE = "preshape_shaper.py"
 
-LIMITS = Limits(taps=10, negative=True, resolution="12 digits")
+LIMITS = Limits(taps=10, negative=True, resolution="to 12 digits")
 OTHER = {"old": replace(LIMITS, taps=5), "kalico": replace(LIMITS, taps=25)}
 
 
