@@ -216,6 +216,12 @@ shaper_type_y: mzv(n=5, t=1.1)
 shaper_freq_y = 56.2
 damping_ratio_y: 0.083
 #*# <---------------------- SAVE_CONFIG ---------------------->
+#*# DO NOT EDIT THIS BLOCK OR BELOW. The contents are auto-generated.
+#*#
+#*# [bed_mesh default]
+#*# version = 1
+#*# points =
+#*#   0.005, 0.010
 #*# [input_shaper]
 #*# shaper_type_x = 2hump_ei
 #*# shaper_freq_x = 61.4

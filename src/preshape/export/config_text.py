@@ -11,8 +11,8 @@ from preshape.errors import InputError
 
 __all__ = ["number_of", "numbers_of", "section_of"]
 
-SAVED = re.compile(r"^#\*# ?", re.MULTILINE)
-"""Begins a line that SAVE_CONFIG has written; those count, and come last."""
+SAVED = re.compile(r"^#\*# (?=\[|\w+\s*[=:]| )", re.MULTILINE)
+"""Begins a section, a setting or its continuation that SAVE_CONFIG has written; those count, and come last."""
 
 LARGEST_TEXT = 1_000_000
 MOST_NUMBERS = 1000
