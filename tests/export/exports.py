@@ -8,7 +8,7 @@ from pathlib import Path
 from tests.laws import FAMILIES
 
 from preshape import Modes, Shaper
-from preshape.export import Exported
+from preshape.export import TARGETS, Exported, SettingsTarget
 
 MODES = Modes([(10.0, 0.02), (27.0, 0.05)])
 NAMES = [family.name for family in FAMILIES]
@@ -27,3 +27,10 @@ def written(exported: Exported, folder: Path) -> Path:
     for name, content in exported.files.items():
         (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
     return folder
+
+
+def executed(target: str, text: str, version: str | None = None, axis: str | None = None) -> Shaper:
+    """What a target that takes settings does with a text."""
+    chosen = TARGETS[target]
+    assert isinstance(chosen, SettingsTarget)
+    return chosen.execute(text, version or chosen.versions[0], axis)

@@ -93,7 +93,7 @@ def test_impulses_are_executed_within_the_targets_resolution(
 
 @pytest.mark.parametrize(("target", "version"), FIRMWARE)
 @given(data=st.data())
-@settings(max_examples=25)
+@settings(max_examples=12)
 def test_a_firmwares_own_pulses_are_found_and_executed_again(target: str, version: str, data: st.DataObject) -> None:
     """Whatever the firmware can execute is written as that, or as a shorter setting that leaves at most 1 % more."""
     families = FIRMWARE[target, version]
