@@ -77,7 +77,7 @@ def _next_step(placed: Placed) -> tuple[str, ...]:
 
 ACS = Target(
     "acs",
-    "an ACSPL+ program with arrays for InShapeOn, for ACS SPiiPlus",
+    "ACSPL+ program for ACS SPiiPlus: arrays for InShapeOn",
     ("SPiiPlus",),
     Limits(taps=MOST, samples=1 << 20),
     _render,

@@ -73,7 +73,7 @@ def _next_step(configured: Configured) -> tuple[str, ...]:
 
 KALICO = SettingsTarget(
     "kalico",
-    "[input_shaper] for Kalico: custom impulses, or for its main branch the nearest family",
+    "[input_shaper] for Kalico: impulses, or the nearest family",
     (CUSTOM, "main"),
     LIMITS,
     _write,

@@ -196,7 +196,7 @@ CLASSIC = SettingsTarget(
 
 FIXED_TIME = SettingsTarget(
     "marlin-ft",
-    "M493 for Marlin's fixed-time motion: the nearest of its families, taps every 1 ms",
+    "M493 for Marlin's fixed-time motion: the nearest family",
     ("2.1",),
     Limits(taps=None, resolution="a family on samples of 1 ms"),
     _write_taps,

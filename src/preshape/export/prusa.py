@@ -111,7 +111,7 @@ def _next_step(configured: Configured) -> tuple[str, ...]:
 
 PRUSA = SettingsTarget(
     "prusa",
-    "M593 for Prusa's Buddy firmware: the nearest of its families",
+    "M593 for Prusa's Buddy firmware: the nearest family",
     tuple(RANGES),
     Limits(taps=None, resolution="a family, frequency to 0.01 Hz, damping to 0.0001"),
     _write,

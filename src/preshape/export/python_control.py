@@ -81,7 +81,7 @@ def _next_step(placed: Placed) -> tuple[str, ...]:
 
 PYTHON_CONTROL = Target(
     "python-control",
-    "a module with the shaper as transfer function and frequency response for python-control",
+    "transfer function and frequency response, a Python module",
     ("0.10",),
     Limits(taps=MOST, samples=1 << 20),
     _render,

@@ -225,7 +225,7 @@ def _next_step(configured: Configured) -> tuple[str, ...]:
 
 RRF = SettingsTarget(
     "rrf",
-    'M593 P"custom" for RepRapFirmware, one shaper for all axes',
+    'M593 P"custom" for RepRapFirmware, one for all axes',
     tuple(VERSIONS),
     LIMITS,
     _write,

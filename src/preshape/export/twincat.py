@@ -104,7 +104,7 @@ def _next_step(placed: Placed) -> tuple[str, ...]:
 
 TWINCAT = Target(
     "twincat",
-    "FIR coefficient arrays for TwinCAT 3 (FB_CTRL_DIGITAL_FILTER, TF4100)",
+    "FIR coefficient arrays for TwinCAT 3 (TF4100)",
     ("3",),
     Limits(taps=LONGEST + 1, samples=LONGEST),
     _render,

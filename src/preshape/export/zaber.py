@@ -86,7 +86,7 @@ def _next_step(configured: Configured) -> tuple[str, ...]:
 
 ZABER = SettingsTarget(
     "zaber",
-    "a subclass of zaber-examples' stream generator, with these impulses",
+    "a subclass of zaber-examples' stream generator",
     ("zaber-motion",),
     Limits(taps=MOST, resolution="every bit"),
     _write,

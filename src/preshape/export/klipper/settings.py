@@ -115,7 +115,7 @@ def _next_step(configured: Configured) -> tuple[str, ...]:
 
 KLIPPER = SettingsTarget(
     "klipper",
-    "[input_shaper] for Klipper: the nearest of its families, with damping_ratio",
+    "[input_shaper] for Klipper: the nearest of its families",
     tuple(VERSIONS),
     Limits(taps=None, negative=True, resolution="a family, frequency to 0.01 Hz, damping to 0.0001"),
     _write,

@@ -64,7 +64,7 @@ def _next_step(configured: Configured) -> tuple[str, ...]:
 
 PLUGIN = SettingsTarget(
     "klipper-plugin",
-    "any impulses for Klipper or Kalico: a module for klippy/extras and its section",
+    "any impulses for Klipper or Kalico: a module for klippy",
     ("2026-03", "old", "kalico"),
     LIMITS,
     _write,
