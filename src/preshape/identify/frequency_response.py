@@ -45,14 +45,11 @@ class FrequencyResponse:
         Measured over commanded acceleration, complex [-].
     deviation : ndarray, shape (channel, bin)
         Standard deviation of real and of imaginary part, from noise.
-    power : ndarray, shape (bin,)
-        Mean power of the command [its unit squared].
     """
 
     frequencies: _Array
     values: _Complex
     deviation: _Array
-    power: _Array
 
 
 def binned(laid: Alignment, noise: _Array, natural: _Array, damping: _Array) -> FrequencyResponse:
@@ -70,13 +67,10 @@ def binned(laid: Alignment, noise: _Array, natural: _Array, damping: _Array) -> 
     edges = _edges(laid.frequencies, natural, damping)
     command = np.abs(laid.command) ** 2
     power = np.add.reduceat(command, edges)
-    count = np.diff(np.append(edges, command.size))
     frequencies = np.add.reduceat(command * laid.frequencies, edges) / power
     cross: _Complex = np.add.reduceat(laid.response * np.conj(laid.command), edges, axis=-1)
     spread = np.add.reduceat(noise * command, edges, axis=-1)
-    return FrequencyResponse(
-        frequencies, np.asarray(cross / power, dtype=np.complex128), np.sqrt(0.5 * spread) / power, power / count
-    )
+    return FrequencyResponse(frequencies, np.asarray(cross / power, dtype=np.complex128), np.sqrt(0.5 * spread) / power)
 
 
 def _edges(frequencies: _Array, natural: _Array, damping: _Array) -> NDArray[np.intp]:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from preshape.identify.frequency_response import FrequencyResponse, binned, noise_of
-from preshape.identify.response_problem import DAMPING_BOUNDS, PHASES, ResponseProblem, poles_among
+from preshape.identify.response_problem import DAMPING_BOUNDS, MODEL_ERROR, PHASES, ResponseProblem, poles_among
 from preshape.identify.sweep_alignment import Alignment
 from preshape.identify.uncertainty import NORMAL_95
 
@@ -207,8 +207,10 @@ def _summary(unknowns: _Array, problem: ResponseProblem) -> ResponseFit:
     left = np.abs(response.values - curve) ** 2 - 2.0 * response.deviation**2
     whole = float(np.sum(np.abs(response.values) ** 2))
     misfit = float(np.sqrt(max(float(left.sum()), 0.0) / whole))
-    # What is left may hide an error of that part of a peak's width, and hang together over the whole band.
-    hidden = np.concatenate([misfit * damping, np.full(n, misfit)])
+    # What is left, and what any model is wrong by, may hide an error of that part of a peak's width, and may hang
+    # together over the whole band.
+    wrong = float(np.hypot(misfit, MODEL_ERROR))
+    hidden = np.concatenate([wrong * damping, np.full(n, wrong)])
     covariance[:known, :known] += np.diag((hidden[:known] / NORMAL_95) ** 2)
     order = np.argsort(natural)
     both = np.concatenate([order, order + n])

@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 from preshape.identify.frequency_response import FrequencyResponse
 from preshape.identify.spectral_model import transmissibility
 
-__all__ = ["DAMPING_BOUNDS", "PHASES", "ResponseProblem", "poles_among"]
+__all__ = ["DAMPING_BOUNDS", "MODEL_ERROR", "PHASES", "ResponseProblem", "poles_among"]
 
 DAMPING_BOUNDS = (3e-4, 0.6)
 WEIGHT_ERROR = 0.001
 """Relative error beside the noise that weighs the residuals: little, or what noise leaves of the peaks is lost."""
 
 MODEL_ERROR = 0.005
-"""Relative error that the model is allowed: no mode is added to explain less."""
+"""Relative error that the model is allowed: no mode is added to explain less, no interval is narrower for it."""
 
 PHASES = 4
 """Coefficients of the phase: constant, delay, delay that grows with the frequency, and that bends."""

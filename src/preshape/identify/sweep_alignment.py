@@ -31,6 +31,10 @@ REFITS = 3
 FEWEST_WINDOWS = 8
 """Windows on the line without which there is none."""
 
+FEWEST_LINES = 200
+"""Lines of the transform in the sweep, and samples per second, without which nothing can be laid over a record."""
+
+SLOWEST = 50.0
 FLOOR = 0.01
 """Lines where the command has less than this part of its median power say nothing about the impulse response."""
 
@@ -48,7 +52,8 @@ CLOCKS = 1e-3
 """How far the rate may be from the one assumed [-]: clocks differ, and a rate need not be round."""
 
 DISPERSION_STEP = 0.3
-"""Step of the delays that are tried, over the resolution of the sweep, 1 / (highest - lowest)."""
+MOST_STRETCHES = 60
+"""Step of the delays that are tried, over the resolution of the sweep, 1 / (highest - lowest), and most steps."""
 
 PEAK = (0.05, 1.0)
 """Before and after its maximum, what counts as the peak of the impulse response [s]."""
@@ -124,10 +129,14 @@ def align(series: TimeSeries, sweep: Sweep | None) -> Alignment | None:
     frequencies = np.arange(length // 2 + 1, dtype=np.float64) * (series.sample_rate / length)
     inside = (frequencies > sweep.lowest + BAND_MARGIN) & (frequencies < sweep.highest - BAND_MARGIN)
     frequencies = frequencies[inside]
+    if frequencies.size < FEWEST_LINES:
+        return None
     response = rfft(values, length, axis=-1)[:, inside]
     best: Alignment | None = None
     for candidate in candidates:
         command = rfft(candidate.sampled(series.sample_rate, start, samples), length)[inside]
+        if not command.any():  # it would start after the end of the record
+            return None
         found = _laid(candidate, frequencies, command, response, length, best)
         if best is None or found.sharpness > best.sharpness:
             best = found
@@ -138,7 +147,7 @@ def _line(series: TimeSeries) -> tuple[float, float, float, float] | None:
     """The frequency that rises evenly: its rate [Hz/s], value at the first sample, lowest and highest seen [Hz]."""
     window = round(WINDOW * series.sample_rate)
     values = series.values - series.values.mean(axis=-1, keepdims=True)
-    if values.shape[-1] < 8 * window:
+    if values.shape[-1] < FEWEST_WINDOWS * window or series.sample_rate < SLOWEST:
         return None
     parts = np.lib.stride_tricks.sliding_window_view(values, window, axis=-1)[:, :: window // 2] * np.hanning(window)
     power = np.sum(np.abs(np.fft.rfft(parts, axis=-1)) ** 2, axis=0)
@@ -186,10 +195,10 @@ def _laid(
         # Delay t(f) = s (f - middle), from clocks that differ: phase pi s (f - middle)^2.
         middle = 0.5 * (frequencies[0] + frequencies[-1])
         widest = CLOCKS / sweep.rate
-        steps = int(np.ceil(widest * span / (DISPERSION_STEP / span)))
-        stretches = widest * np.arange(-steps, steps + 1) / max(steps, 1)
-        bends = np.exp(1j * np.pi * np.outer(stretches, (frequencies - middle) ** 2))
-        fourth = [float(np.sum(np.abs(np.fft.ifft(raw * bend)) ** 4)) for bend in bends]
+        steps = min(int(np.ceil(widest * span**2 / DISPERSION_STEP)), MOST_STRETCHES)
+        stretches = DISPERSION_STEP / span**2 * np.arange(-steps, steps + 1)
+        square = 1j * np.pi * (frequencies - middle) ** 2
+        fourth = [float(np.sum(np.abs(np.fft.ifft(raw * np.exp(each * square))) ** 4)) for each in stretches]
         stretch = float(stretches[int(np.argmax(fourth))])
     else:
         stretch, middle = known.stretch, 0.5 * (frequencies[0] + frequencies[-1])
