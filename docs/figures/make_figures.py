@@ -16,10 +16,11 @@ from preshape.engine.basis import Basis
 from preshape.engine.polynomial import Polynomial
 from preshape.engine.projection import project
 from preshape.files import write_atomically
+from preshape.identify import TimeSeries, operational_modes
 from preshape.papers.hyde.chapter6_figures import swept_figure
 from preshape.papers.hyde.chapter6_sweep import sweep
 from preshape.plant import FloatingOscillator, load_plant
-from preshape.report import comparison_figure, contour_figure, move_figure, simulation_figure
+from preshape.report import comparison_figure, contour_figure, move_figure, simulation_figure, stabilisation_figure
 from preshape.report.figures import ACCENT, INK, MUTED, SECOND, SOFT, as_svg, new_figure, tidy
 from preshape.vibration import residual_vibration, tolerated_bands
 from preshape.workflow import compare, simulate_plant
@@ -215,6 +216,21 @@ def adaptive() -> Figure:
     return swept_figure(sweep(1), sweep(2))
 
 
+def stabilisation() -> Figure:
+    """Two modes that white noise shakes for ten minutes, seen by two sensors."""
+    from scipy.signal import lfilter
+
+    rate, generator = 50.0, np.random.default_rng(1)
+    motion = np.zeros((2, 30_000))
+    for frequency, damping, shape in ((1.5, 0.01, (1.0, 0.6)), (4.2, 0.02, (0.8, -1.0))):
+        omega = 2.0 * math.pi * frequency
+        pole = np.exp(omega * (-damping + 1j * math.sqrt(1.0 - damping**2)) / rate)
+        swing = lfilter([1.0], np.poly([pole, pole.conjugate()]).real, generator.normal(size=30_000))
+        motion += np.outer(shape, swing / swing.std())
+    motion += 0.05 * generator.normal(size=motion.shape)
+    return stabilisation_figure(operational_modes(TimeSeries(rate, 0.0, motion, ("bus", "arm"))))
+
+
 FIGURES = {
     "adaptive": adaptive,
     "certificate": certificate,
@@ -224,6 +240,7 @@ FIGURES = {
     "insensitivity": insensitivity,
     "own-machine": own_machine,
     "swinging": swinging,
+    "stabilisation": stabilisation,
 }
 
 

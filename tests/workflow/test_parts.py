@@ -9,9 +9,8 @@ import pytest
 
 from preshape import Mode, Shaper, design, identify
 from preshape.export import klipper
-from preshape.identify import Identification, IdentifiedMode, Spectrum
+from preshape.identify import Identification, IdentifiedMode, Spectrum, merged_modes
 from preshape.workflow import calibrate
-from preshape.workflow.merge_modes import merged_modes
 from preshape.workflow.remaining import lines_of_modes, lines_of_spectra, remaining_amplitude
 from preshape.workflow.simulate import simulate_move
 from preshape.workflow.spectra import scored_spectrum

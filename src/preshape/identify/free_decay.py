@@ -12,7 +12,7 @@ from preshape.identify.decaying_sinusoids import Subspace, left_over
 from preshape.identify.measurement import TimeSeries
 from preshape.identify.welch import spectrum
 
-__all__ = ["FreeDecay", "PRINTER_BAND", "find_free_decay"]
+__all__ = ["FreeDecay", "PRINTER_BAND", "find_free_decay", "highest_power"]
 
 PRINTER_BAND = (10.0, 130.0)
 """Structural modes of printers [Hz]. Above, captures are full of motor and belt lines, which no shaper can reach."""
@@ -144,7 +144,7 @@ def _prepared(series: TimeSeries) -> tuple[_Array, float, float, int, float]:
             smooth = np.array([np.convolve(channel, weights, "valid")[::step] for channel in values])
             first = series.start + 0.5 * (taps - 1) / rate
             return smooth, rate / step, first, -(-taps // (2 * step)), rate / step / (2.0 * PRINTER_BAND[1])
-    step = max(min(values.shape[-1] // MOST_SAMPLES, int(rate / (SAMPLES_PER_PERIOD * _highest_power(series)))), 1)
+    step = max(min(values.shape[-1] // MOST_SAMPLES, int(rate / (SAMPLES_PER_PERIOD * highest_power(series)))), 1)
     kept = values.shape[-1] // step * step
     # The mean of blocks keeps decaying sinusoids what they are and white noise white.
     thinned = values[:, :kept].reshape(values.shape[0], -1, step).mean(axis=-1)
@@ -167,7 +167,7 @@ def _loud(values: _Array) -> tuple[int, int]:
     return max(end - LONGEST_RECORD, 0), end
 
 
-def _highest_power(series: TimeSeries) -> float:
+def highest_power(series: TimeSeries) -> float:
     """The highest frequency with power in the record [Hz]."""
     found = spectrum(series)
     density = found.total[1:]

@@ -8,12 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from preshape.identify.measurement import Spectrum
+from preshape.identify.stabilisation import Stabilisation
 from preshape.mode import Mode
 
-__all__ = ["IdentifiedMode", "Identification", "RING_DOWN", "SPECTRUM_FIT"]
+__all__ = ["FREQUENCY_RESPONSE", "IdentifiedMode", "Identification", "OPERATIONAL", "RING_DOWN", "SPECTRUM_FIT"]
 
 RING_DOWN = "ring-down"
 SPECTRUM_FIT = "spectrum fit"
+FREQUENCY_RESPONSE = "frequency response"
+OPERATIONAL = "operational"
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,11 +61,15 @@ class Identification:
     fitted : ndarray, shape (frequency,)
         The model's curve at `spectrum.frequencies`; NaN outside the band that was fitted.
     method : str
-        'ring-down' or 'spectrum fit'.
+        'ring-down', 'spectrum fit', 'frequency response' or 'operational'; of several measurements, all that were used.
     trouble : tuple of str
         Sentences on what is wrong with the measurement or the machine; empty when healthy.
     clear : bool
         False when the modes should not be trusted.
+    stabilisation : Stabilisation or None
+        Poles over model orders, of an operational identification.
+    each : tuple of Identification
+        What each of several measurements shows; empty for a single one.
     """
 
     modes: tuple[IdentifiedMode, ...]
@@ -71,3 +78,5 @@ class Identification:
     method: str
     trouble: tuple[str, ...]
     clear: bool
+    stabilisation: Stabilisation | None = None
+    each: tuple[Identification, ...] = ()

@@ -8,10 +8,13 @@ from preshape.errors import MeasurementError
 from preshape.identify.measurement import TimeSeries
 from preshape.identify.text import check_fixed_decimals, check_increasing, check_rate, parse_table
 
-__all__ = ["FORMAT", "read", "recognises"]
+__all__ = ["FORMAT", "LOST", "read", "recognises"]
 
 FORMAT = "Klipper raw data"
 HEADER = ("#time", "accel_x", "accel_y", "accel_z")
+LOST = "samples are missing"
+"""How the remark on gaps begins: what comes after them stands at the wrong time."""
+
 MINIMUM_ROWS = 2
 GAP = 3.0
 """A step of time longer than this many mean steps means lost samples; smaller ones are the accelerometer's jitter."""
@@ -46,5 +49,5 @@ def read(lines: list[str], source: str, sample_rate: float | None) -> TimeSeries
     found = len(times) / float(times[-1] - times[0])
     check_rate(sample_rate, found, source)
     gaps = int(np.count_nonzero(np.diff(times) > GAP / found))
-    remarks = (f"samples are missing: the time stamps have {gaps} gaps.",) if gaps else ()
+    remarks = (f"{LOST}: the time stamps have {gaps} gaps.",) if gaps else ()
     return TimeSeries(found, float(times[0]), table[:, 1:].T, ("x", "y", "z"), "mm/s^2", source, FORMAT, remarks)

@@ -17,6 +17,7 @@ from preshape.report.move_figure import move_figure
 from preshape.report.page import calibration_page, klipper_sentence
 from preshape.report.shaped_simulation import OutputMotion, ShapedSimulation
 from preshape.report.simulation_figure import simulation_figure
+from preshape.report.stabilisation_figure import stabilisation_figure
 from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table
 
 __all__ = [
@@ -48,6 +49,7 @@ __all__ = [
     "mode_table",
     "move_sentence",
     "simulation_figure",
+    "stabilisation_figure",
     "table_sentence",
     "move_figure",
 ]

@@ -16,7 +16,6 @@ from preshape.mode import Mode
 from preshape.report import Calibration, MeasuredFile
 from preshape.workflow.candidates import designed_candidates
 from preshape.workflow.choose import choose, ranked
-from preshape.workflow.merge_modes import merged_modes
 from preshape.workflow.simulate import simulate_move
 from preshape.workflow.spectra import scored_spectrum
 
@@ -78,7 +77,7 @@ def calibrate(
     if damping is not None:
         Mode(1.0, damping)  # says what is wrong with it
     measured = tuple(_measured(Path(path), damping, sample_rate) for path in paths)
-    modes = merged_modes([file.identification for file in measured])
+    modes = identify.merged_modes([file.identification for file in measured])
     spectra = klipper.as_spectra([(file.scored.frequencies, file.scored.power) for file in measured])
     stock = klipper.recommend(spectra).chosen if _klipper_applies(measured) else None
     clear = all(file.identification.clear for file in measured)

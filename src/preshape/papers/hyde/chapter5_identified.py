@@ -9,11 +9,11 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape.identify import TimeSeries, ring_down
+from preshape.identify import IdentifiedMode, TimeSeries, operational_modes, ring_down
 from preshape.mode import Mode
 from preshape.plant.mace import CALIBRATED_GAINS, Mace
 
-__all__ = ["Averaged", "Spectra", "article", "averaged_spectrum", "closed_loop", "open_loop", "rung_down"]
+__all__ = ["Averaged", "Spectra", "article", "at_work", "averaged_spectrum", "closed_loop", "open_loop", "rung_down"]
 
 DT = 2e-3
 """Of the noise and the simulation [s]."""
@@ -60,20 +60,24 @@ class Averaged:
         Of the sensors' velocity [m], mean over runs and sensors.
     peaks : tuple of float
         Where it stands out [Hz].
+    velocities : ndarray, shape (sensor, sample)
+        What was averaged, run after run, each from rest [m/s].
     """
 
     frequencies: NDArray[np.float64]
     amplitude: NDArray[np.float64]
     peaks: tuple[float, ...]
+    velocities: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class Spectra:
-    """One configuration seen both ways: Hyde's spectra, and modes fitted to free vibration."""
+    """One configuration: Hyde's spectra, modes fitted to free vibration, and to the shaken records themselves."""
 
     plant: Mace
     averaged: Averaged
     rung: tuple[Mode, ...]
+    working: tuple[IdentifiedMode, ...]
 
 
 @cache
@@ -114,15 +118,29 @@ def averaged_spectrum(plant: Mace, runs: int, duration: float, *, seed: int) -> 
     count = round(duration / DT)
     window = np.hanning(count)
     total = np.zeros(count // 2 + 1)
+    velocities: list[NDArray[np.float64]] = []
     for _ in range(runs):
         outputs = plant.simulate(_command(plant, NOISE * generator.standard_normal((2, count))), DT, step=DT).outputs
-        for name in SENSORS:
-            total += np.abs(np.fft.rfft(window * np.gradient(outputs[name], DT)))
+        velocities.append(np.array([np.gradient(outputs[name], DT) for name in SENSORS]))
+        total += np.abs(np.fft.rfft(window * velocities[-1], axis=-1)).sum(axis=0)
     frequencies = np.fft.rfftfreq(count, DT).astype(float)
     width = max(1, round(SMOOTHED * duration / 2.0) * 2 - 1) if duration > 10.0 else 1
     mean = total * DT / (runs * len(SENSORS))
     amplitude = np.convolve(mean, np.full(width, 1.0 / width), mode="same").astype(float)
-    return Averaged(frequencies, amplitude, _peaks(frequencies, amplitude))
+    return Averaged(frequencies, amplitude, _peaks(frequencies, amplitude), np.concatenate(velocities, axis=-1))
+
+
+def at_work(averaged: Averaged) -> tuple[IdentifiedMode, ...]:
+    """Modes of the shaken records, both sensors together, the slowest first.
+
+    The runs are joined: covariances reach over a fraction of a second, so a few seams in minutes do not matter.
+    """
+    from scipy.signal import decimate
+
+    values = decimate(averaged.velocities, DECIMATED, axis=-1)
+    found = operational_modes(TimeSeries(1.0 / (DT * DECIMATED), 0.0, values, SENSORS, "m/s"), maximum=8)
+    kept = [each for each in found.modes if LISTED[0] < each.mode.frequency < LISTED[1] and each.mode.damping < LIGHT]
+    return tuple(sorted(kept, key=lambda each: each.mode.frequency))
 
 
 @cache
@@ -146,7 +164,8 @@ def rung_down(plant: Mace, *, seed: int = 53) -> tuple[Mode, ...]:
 
 
 def _seen(plant: Mace, runs: int, duration: float, *, seed: int) -> Spectra:
-    return Spectra(plant, averaged_spectrum(plant, runs, duration, seed=seed), rung_down(plant))
+    averaged = averaged_spectrum(plant, runs, duration, seed=seed)
+    return Spectra(plant, averaged, rung_down(plant), at_work(averaged))
 
 
 def _command(plant: Mace, torques: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from preshape.identify import Identification, IdentifiedMode
+from preshape.identify.identification import Identification, IdentifiedMode
 from preshape.mode import Mode
 
 __all__ = ["merged_modes"]
