@@ -107,10 +107,10 @@ def test_unreadable(tmp_path, monkeypatch):
     path = tmp_path / "file.csv"
     path.write_text(RAW + RAW_ROWS)
 
-    def refuse(self):
+    def refuse(self, *arguments, **keywords):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr("pathlib.Path.read_bytes", refuse)  # chmod does not bind the superuser
+    monkeypatch.setattr("pathlib.Path.open", refuse)  # chmod does not bind the superuser
     with pytest.raises(MeasurementError, match="cannot be read .permission denied"):
         read(path)
 
@@ -119,7 +119,7 @@ def test_large_file_is_refused_without_reading(tmp_path, monkeypatch):
     path = tmp_path / "large.csv"
     with path.open("wb") as file:
         file.truncate(MAXIMUM_FILE_SIZE)  # sparse: no disk is used
-    monkeypatch.setattr("pathlib.Path.read_bytes", lambda self: pytest.fail("the file was read"))
+    monkeypatch.setattr("pathlib.Path.open", lambda *_, **__: pytest.fail("the file was read"))
     with pytest.raises(MeasurementError, match="200 MB"):
         read(path)
 

@@ -100,7 +100,7 @@ def test_several_datasets(tmp_path, shapers):
     [("Rate 1342, overflows 0", 0), ("Rate 1342 overflows 0", 0), ("Rate: 1342, overflows: 2", 2)],
 )
 def test_rrf_capture(tmp_path, trailer, lost):
-    rows = "".join(f"{k},{0.001 * k:.3f},-0.5,1.0\n" for k in range(100))
+    rows = "".join(f"{k},{0.001 * k:.3f},-0.{k % 7},1.{k % 5}\n" for k in range(100))
     series = read(write(tmp_path, f"Sample,X,Y,Z\r\n{rows}{trailer}\r\n\r\n"))
     assert (series.sample_rate, series.unit, series.channels) == (1342.0, "g", ("x", "y", "z"))
     np.testing.assert_allclose(series.values[0], 0.001 * np.arange(1, 100))  # sample 0 is dropped

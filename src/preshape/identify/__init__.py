@@ -5,7 +5,7 @@ from preshape.identify.find import find_modes
 from preshape.identify.identification import Identification, IdentifiedMode
 from preshape.identify.measurement import Measurement, PrintedSpectrum, Spectrum, TimeSeries
 from preshape.identify.readers import read
-from preshape.identify.text import MAXIMUM_FILE_SIZE
+from preshape.identify.source_file import MAXIMUM_FILE_SIZE
 from preshape.identify.welch import spectrum
 
 __all__ = [

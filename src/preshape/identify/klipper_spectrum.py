@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from preshape.errors import MeasurementError
 from preshape.identify.measurement import PrintedSpectrum, Spectrum
+from preshape.identify.source_file import SourceFile
 from preshape.identify.text import cells, check_fixed_decimals, check_increasing, parse_table
+from preshape.identify.wanted import Wanted
 
 __all__ = ["FORMAT", "read", "recognises"]
 
@@ -39,16 +41,18 @@ _SHAPER = re.compile(
 )
 
 
-def recognises(lines: list[str]) -> bool:
+def recognises(file: SourceFile) -> bool:
     """True for a file whose first line begins with a frequency column."""
-    return lines[0].strip().lower().startswith(("freq,", '"freq",')) or lines[0].strip().lower() == "freq"
+    first = file.head[0].strip().lower()
+    return first.startswith(("freq,", '"freq",')) or first == "freq"
 
 
-def read(lines: list[str], source: str, sample_rate: float | None) -> Spectrum:
+def read(file: SourceFile, wanted: Wanted) -> Spectrum:
     """Read a spectrum: the density of three axes, or of several datasets."""
-    if sample_rate is not None:
+    source = file.name
+    if wanted.sample_rate is not None:
         raise MeasurementError(f"{source}: this is a spectrum, which has no sample rate; leave sample_rate out.")
-    header = cells(lines[0])
+    header = cells(file.head[0])
     names = header[1:]
     shapers = next((i for i, name in enumerate(names) if name.lower() == "shapers:" or _SHAPER.match(name)), None)
     data = names if shapers is None else names[:shapers]
@@ -68,8 +72,8 @@ def read(lines: list[str], source: str, sample_rate: float | None) -> Spectrum:
         scored = picked
     if not channels:
         raise MeasurementError(f"{source}: the header names no density column after 'freq'; export the spectrum again.")
-    table = parse_table(lines[1:], 2, len(header), source, used=1 + len(data))
-    check_fixed_decimals(lines[1:], 2, source)
+    table = parse_table(file, 1, len(header), used=1 + len(data))
+    check_fixed_decimals(file)
     if len(table) < MINIMUM_ROWS:
         raise MeasurementError(
             f"{source}: the spectrum has {len(table)} rows and at least {MINIMUM_ROWS} are needed; export it again."

@@ -25,7 +25,7 @@ SHORTEST_WINDOW = 16
 
 def is_sweep(time_series: TimeSeries) -> bool:
     """Whether a time series is Klipper's resonance test, and not a short recording by its ACCELEROMETER_MEASURE."""
-    return time_series.format == klipper_raw.FORMAT and time_series.duration >= SHORTEST_SWEEP
+    return time_series.format.startswith(klipper_raw.FORMAT) and time_series.duration >= SHORTEST_SWEEP
 
 
 def spectrum(time_series: TimeSeries, *, window_duration: float = WINDOW) -> Spectrum:
