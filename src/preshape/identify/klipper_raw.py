@@ -62,4 +62,5 @@ def accelerations(
         if gaps.size
         else ()
     )
+    table.flags.writeable = False  # so that it need not be copied
     return TimeSeries(found, float(times[0]), table[:, 1:].T, ("x", "y", "z"), "mm/s^2", source, name, remarks)

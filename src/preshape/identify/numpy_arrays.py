@@ -15,6 +15,7 @@ from preshape.errors import MeasurementError
 from preshape.identify.measurement import TimeSeries
 from preshape.identify.named_arrays import series_of
 from preshape.identify.source_file import MAXIMUM_FILE_SIZE, SourceFile
+from preshape.identify.text import printable
 from preshape.identify.wanted import Wanted
 
 __all__ = ["FORMAT", "read", "recognises"]
@@ -104,7 +105,7 @@ def _array(stream: IO[bytes], size: int, name: str, source: str) -> NDArray[Any]
         return flat.reshape(shape, order="F" if fortran else "C")
     except MeasurementError:
         raise
-    except (ValueError, TypeError, SyntaxError, RecursionError, MemoryError, OverflowError) as error:
+    except Exception as error:  # whatever a damaged header makes NumPy raise; it parses it as Python literals
         raise MeasurementError(
             f"{source}: {name[:40]!r} is not a whole NumPy array ({_words(error)}); save it again."
         ) from None
@@ -112,4 +113,4 @@ def _array(stream: IO[bytes], size: int, name: str, source: str) -> NDArray[Any]
 
 def _words(error: Exception) -> str:
     """The first line of what went wrong."""
-    return (str(error).split("\n") or [""])[0][:80] or type(error).__name__
+    return printable(str(error).split("\n")[0][:80]) or type(error).__name__

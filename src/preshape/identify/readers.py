@@ -24,6 +24,7 @@ from preshape.identify import (
 from preshape.identify.measurement import Measurement, TimeSeries
 from preshape.identify.sensor_checks import sensor_trouble
 from preshape.identify.source_file import SourceFile, open_source
+from preshape.identify.text import printable
 from preshape.identify.wanted import Wanted
 
 __all__ = ["READERS", "Reader", "read"]
@@ -102,16 +103,16 @@ def read(path: str | os.PathLike[str], *, sample_rate: float | None = None, part
     wanted = Wanted(sample_rate, part)
     for reader in READERS:
         if reader.recognises(file):
-            measurement = _read(reader, file, wanted)
-            if not isinstance(measurement, TimeSeries):
-                return measurement
-            found = sensor_trouble(measurement)
+            # Absurd numbers overflow on the way; what they come to is refused, so no warning is needed.
+            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+                measurement = _read(reader, file, wanted)
+                found = sensor_trouble(measurement) if isinstance(measurement, TimeSeries) else ()
             return replace(measurement, remarks=(*measurement.remarks, *found)) if found else measurement
     _check_lines(file)
     known = ", ".join(reader.FORMAT for reader in READERS)
     raise MeasurementError(
-        f"{file.name}: the first line {_shown(file.head[0])!r} is not that of a known measurement ({known}); "
-        "check the file."
+        f"{file.name}: the first line {printable(file.head[0].strip()[:40])!r} is not that of a known measurement "
+        f"({known}); check the file."
     )
 
 
@@ -136,7 +137,3 @@ def _check_lines(file: SourceFile) -> None:
     """Raise when a text file has a single line."""
     if file.size <= len(file.begin) and sum(1 for line in file.head if line.strip()) < 2:
         raise MeasurementError(f"{file.name}: the file has only one line; a measurement needs many, record it again.")
-
-
-def _shown(line: str) -> str:
-    return "".join(sign if sign.isprintable() else "?" for sign in line.strip()[:40])

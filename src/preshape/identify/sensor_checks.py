@@ -133,13 +133,14 @@ def _wrong_unit(series: TimeSeries) -> tuple[str, ...]:
 
 def _aliased(series: TimeSeries, moving: NDArray[np.bool_]) -> tuple[str, ...]:
     """Much power just below half the rate: then there is much above it, too, and it appears folded."""
-    count = series.values.shape[-1] // BLOCK
-    length = BLOCK if count else FEWEST
-    count = max(count, 1)
+    length = BLOCK if series.values.shape[-1] >= BLOCK else FEWEST
+    count = series.values.shape[-1] // length
     stride = max(count // MOST_BLOCKS, 1)
-    used = series.values[moving, : count * length].reshape(int(moving.sum()), count, length)[:, ::stride]
-    centred = used - used.mean(axis=-1, keepdims=True)
-    power = np.sum(np.abs(np.fft.rfft(centred * np.hanning(length), axis=-1)) ** 2, axis=(0, 1))
+    power = np.zeros(length // 2 + 1)
+    for channel in (one for one, moves in zip(series.values, moving, strict=True) if moves):
+        blocks = channel[: count * length].reshape(count, length)[::stride]
+        centred = blocks - blocks.mean(axis=-1, keepdims=True)
+        power += np.sum(np.abs(np.fft.rfft(centred * np.hanning(length), axis=-1)) ** 2, axis=0)
     part = float(power[int(TOP * (length // 2)) :].sum() / max(float(power.sum()), np.finfo(float).tiny))
     if part < FOLDED:
         return ()

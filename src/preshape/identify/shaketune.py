@@ -16,6 +16,7 @@ from preshape.errors import MeasurementError
 from preshape.identify import klipper_raw
 from preshape.identify.measurement import TimeSeries
 from preshape.identify.source_file import MAXIMUM_FILE_SIZE, SourceFile
+from preshape.identify.text import printable
 from preshape.identify.wanted import Wanted, pick_part
 
 __all__ = ["FORMAT", "read", "recognises"]
@@ -67,8 +68,8 @@ def _decoded(line: bytes, number: int, source: str, kind: Any) -> Any:
         return msgspec.json.decode(line, type=kind, strict=False)
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         raise MeasurementError(
-            f"{source}: line {number} of the decompressed file is not a measurement of Shake&Tune ({error}); "
-            "copy the file again."
+            f"{source}: line {number} of the decompressed file is not a measurement of Shake&Tune "
+            f"({printable(str(error)[:80])}); copy the file again."
         ) from None
 
 

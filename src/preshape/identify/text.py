@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from preshape.errors import MeasurementError
 from preshape.identify.source_file import SourceFile
 
-__all__ = ["Table", "cells", "check_fixed_decimals", "check_increasing", "check_rate", "parse_table"]
+__all__ = ["Table", "cells", "check_fixed_decimals", "check_increasing", "check_rate", "parse_table", "printable"]
 
 SHOWN_CELL = 24
 """Characters of a wrong cell that an error message shows."""
@@ -139,7 +139,7 @@ def _columns(count: int) -> str:
 def _number(cell: str, line: int, source: str) -> float:
     """The finite number in a cell, or a sentence naming line and cell."""
     shown = cell if len(cell) <= SHOWN_CELL else cell[:SHOWN_CELL] + "..."
-    shown = "".join(sign if sign.isprintable() else "?" for sign in shown)
+    shown = printable(shown)
     try:
         value = float(cell)
         if "_" in cell:  # Python's digit grouping is no number in a measurement file
@@ -192,3 +192,8 @@ def check_fixed_decimals(file: SourceFile) -> None:
             f"{file.name}: the last line ({number}) is cut in the middle of a number; the file is truncated, "
             "copy it again."
         )
+
+
+def printable(text: str) -> str:
+    """The text with a question mark for what a terminal would not print, so that a message stays one line."""
+    return "".join(sign if sign.isprintable() else "?" for sign in text)

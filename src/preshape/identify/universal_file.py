@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import re
 import warnings
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from preshape.errors import MeasurementError
 from preshape.identify.measurement import Measurement, Spectrum, TimeSeries
 from preshape.identify.source_file import SourceFile
-from preshape.identify.text import check_increasing, check_rate
+from preshape.identify.text import check_increasing, check_rate, printable
 from preshape.identify.time_column import uniform
 from preshape.identify.wanted import Wanted, pick_part
 
@@ -34,19 +36,31 @@ def recognises(file: SourceFile) -> bool:
     return bool(_BEGIN.match(file.begin[:400]))
 
 
+@dataclass(frozen=True)
+class _Function:
+    """What is used of a dataset 58; `number` counts the file's datasets from 1."""
+
+    number: int
+    kind: int
+    abscissa: NDArray[np.float64]
+    values: NDArray[Any]
+    promised: int
+    channel: str
+    unit: str
+
+
 def read(file: SourceFile, wanted: Wanted) -> Measurement:
     """Read the datasets 58 that stand on the same samples as the channels of one measurement."""
     groups = _groups(file)
-    names = [f"set {numbers[0]}" for numbers, _ in groups]
-    _, sets = groups[pick_part(names, wanted.part, file.name)]
-    abscissa = np.asarray(sets[0]["x"], dtype=np.float64)
-    values = np.array([np.asarray(one["data"], dtype=np.float64) for one in sets])
-    units = {str(one.get("ordinate_axis_units_lab", "")).strip() for one in sets} - {"NONE"}
+    functions = groups[pick_part([f"set {group[0].number}" for group in groups], wanted.part, file.name)]
+    abscissa = functions[0].abscissa
+    values = np.array([one.values for one in functions], dtype=np.float64)
+    units = {one.unit for one in functions}
     unit = units.pop() if len(units) == 1 else ""
-    channels = tuple(f"{one['rsp_node']}{_direction(one['rsp_dir'])}" for one in sets)
+    channels = tuple(one.channel for one in functions)
     if not (np.all(np.isfinite(values)) and np.all(np.isfinite(abscissa))):
         raise MeasurementError(f"{file.name}: the datasets hold NaN or infinity; export them again.")
-    if sets[0]["func_type"] == TIME_RESPONSE:
+    if functions[0].kind == TIME_RESPONSE:
         check_increasing(abscissa, "time", None, file.name)
         rate, values = uniform(abscissa, values, None, file.name)
         check_rate(wanted.sample_rate, rate, file.name)
@@ -54,36 +68,26 @@ def read(file: SourceFile, wanted: Wanted) -> Measurement:
     if wanted.sample_rate is not None:
         raise MeasurementError(f"{file.name}: this is a spectrum, which has no sample rate; leave sample_rate out.")
     check_increasing(abscissa, "frequency", None, file.name)
-    spacing = float(abscissa[-1] - abscissa[0]) / (len(abscissa) - 1)
-    return Spectrum(
-        abscissa, values, channels, unit=unit, window_duration=1.0 / spacing, source=file.name, format=FORMAT
-    )
+    window = (len(abscissa) - 1) / float(abscissa[-1] - abscissa[0])
+    return Spectrum(abscissa, values, channels, unit=unit, window_duration=window, source=file.name, format=FORMAT)
 
 
-def _groups(file: SourceFile) -> list[tuple[list[int], list[dict[str, Any]]]]:
-    """Numbers and contents of the datasets that can be read, those on the same samples together."""
-    try:
-        import pyuff
-    except ImportError:
-        raise MeasurementError(
-            f"{file.name}: reading universal files needs the package pyuff; pip install 'preshape[formats]'."
-        ) from None
-    groups: dict[tuple[object, ...], tuple[list[int], list[dict[str, Any]]]] = {}
+def _groups(file: SourceFile) -> list[list[_Function]]:
+    """The functions that can be read, those on the same samples together."""
+    groups: dict[tuple[object, ...], list[_Function]] = {}
     others: set[str] = set()
-    for number, one in _datasets(pyuff, file):
-        kind = one["func_type"]
-        points = len(one["data"])
-        if kind not in (TIME_RESPONSE, *SPECTRA) or np.iscomplexobj(one["data"]):
-            others.add(NAMES.get(kind, f"functions of type {kind}"))
+    for one in _functions(file):
+        if one.kind not in (TIME_RESPONSE, *SPECTRA) or np.iscomplexobj(one.values):
+            others.add(NAMES.get(one.kind, f"functions of type {one.kind}"))
             continue
-        if points != one["num_pts"] or points < MINIMUM_ROWS:
+        points = len(one.values)
+        if points != one.promised or points != len(one.abscissa) or points < MINIMUM_ROWS:
             raise MeasurementError(
-                f"{file.name}: dataset {number} says {one['num_pts']} points and has {points} (at least {MINIMUM_ROWS} "
-                "are needed); the file is truncated, export it again."
+                f"{file.name}: dataset {one.number} says {one.promised} points and has {points} (at least "
+                f"{MINIMUM_ROWS} are needed); the file is truncated, export it again."
             )
-        same = groups.setdefault((kind, points, float(one["x"][0]), float(one["x"][-1])), ([], []))
-        same[0].append(number)
-        same[1].append(one)
+        key = (one.kind, points, float(one.abscissa[0]), float(one.abscissa[-1]))
+        groups.setdefault(key, []).append(one)
     if not groups:
         there = ", ".join(sorted(others)) or "no dataset 58"
         raise MeasurementError(
@@ -93,8 +97,14 @@ def _groups(file: SourceFile) -> list[tuple[list[int], list[dict[str, Any]]]]:
     return list(groups.values())
 
 
-def _datasets(pyuff: Any, file: SourceFile) -> list[tuple[int, dict[str, Any]]]:
-    """Each dataset 58 with its number, counted from 1."""
+def _functions(file: SourceFile) -> list[_Function]:
+    """Every dataset 58."""
+    try:
+        import pyuff
+    except ImportError:
+        raise MeasurementError(
+            f"{file.name}: reading universal files needs the package pyuff; pip install 'preshape[formats]'."
+        ) from None
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -104,17 +114,24 @@ def _datasets(pyuff: Any, file: SourceFile) -> list[tuple[int, dict[str, Any]]]:
                 raise MeasurementError(
                     f"{file.name}: the file holds {len(picked)} datasets and at most {MOST_DATASETS} are taken."
                 )
-            read = [(index + 1, content.read_sets(index)) for index in picked]
-            return [(number, {**one, "func_type": int(one["func_type"])}) for number, one in read]
+            return [_function(index + 1, content.read_sets(index)) for index in picked]
     except MeasurementError:
         raise
-    except Exception as error:  # pyuff raises plain Exception for whatever is wrong
-        words = (str(error).splitlines() or [type(error).__name__])[0][:80]
+    except Exception as error:  # pyuff raises plain Exception for whatever is wrong, and leaves fields out
+        words = printable((str(error).splitlines() or [type(error).__name__])[0][:80])
         raise MeasurementError(f"{file.name}: the universal file is damaged ({words}); export it again.") from None
 
 
-def _direction(code: object) -> str:
-    """x, y, z with its sign for the codes 1 to 3, as the universal file numbers directions."""
-    number = int(code) if isinstance(code, int | np.integer | float) else 0
-    name = {1: "x", 2: "y", 3: "z"}.get(abs(number), "")
-    return f"-{name}" if number < 0 and name else name
+def _function(number: int, content: dict[str, Any]) -> _Function:
+    direction = int(content["rsp_dir"])
+    axis = {1: "x", 2: "y", 3: "z"}.get(abs(direction), "")
+    unit = printable(str(content["ordinate_axis_units_lab"]).strip())
+    return _Function(
+        number,
+        int(content["func_type"]),
+        np.asarray(content["x"], dtype=np.float64),
+        np.asarray(content["data"]),
+        int(content["num_pts"]),
+        f"{int(content['rsp_node'])}{'-' if direction < 0 and axis else ''}{axis}",
+        "" if unit == "NONE" else unit,
+    )

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from preshape.errors import MeasurementError
+from preshape.identify.text import printable
 
 __all__ = ["Wanted", "pick_part"]
 
@@ -44,7 +45,7 @@ def pick_part(names: Sequence[str], part: str | None, source: str) -> int:
     if not names:
         raise MeasurementError(f"{source}: the file holds no measurement; record it again.")
     shown = [name if len(name) <= SHOWN_NAME else name[:SHOWN_NAME] + "..." for name in names[:SHOWN_PARTS]]
-    listed = ", ".join("".join(sign if sign.isprintable() else "?" for sign in name) for name in shown)
+    listed = ", ".join(printable(name) for name in shown)
     if len(names) > SHOWN_PARTS:
         listed += f" and {len(names) - SHOWN_PARTS} more"
     if part is None:

@@ -10,7 +10,7 @@ import numpy as np
 from preshape.errors import MeasurementError
 from preshape.identify.measurement import TimeSeries
 from preshape.identify.source_file import SourceFile
-from preshape.identify.text import check_rate
+from preshape.identify.text import check_rate, printable
 from preshape.identify.wanted import Wanted
 
 __all__ = ["FORMAT", "read", "recognises"]
@@ -38,7 +38,7 @@ def read(file: SourceFile, wanted: Wanted) -> TimeSeries:
             warnings.simplefilter("ignore", wavfile.WavFileWarning)  # chunks of cue points and comments
             rate, samples = wavfile.read(io.BytesIO(data))
     except Exception as error:  # whatever a damaged file makes SciPy raise; it has no exception of its own for it
-        words = (str(error).split("\n") or [""])[0][:80] or type(error).__name__
+        words = printable(str(error).split("\n")[0][:80]) or type(error).__name__
         raise MeasurementError(
             f"{file.name}: the WAV file is damaged or compressed ({words}); save it as PCM."
         ) from None
