@@ -40,7 +40,7 @@ def ours(path: str) -> None:
 
 def polars(path: str) -> None:
     """Its table as a NumPy array."""
-    import polars  # type: ignore[import-not-found]
+    import polars
 
     table = polars.read_csv(path).to_numpy()
     mark("read")

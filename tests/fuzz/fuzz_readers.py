@@ -22,8 +22,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 with atheris.instrument_imports(include=["preshape.identify", "pyuff", "scipy.io"]):
     import pyuff  # noqa: F401
-    import scipy.io.matlab
     import scipy.io.wavfile  # noqa: F401
+    import zstandard
 
     from preshape.errors import MeasurementError
     from preshape.identify import read
@@ -34,11 +34,11 @@ FOLDER = Path(tempfile.mkdtemp(dir="/dev/shm" if Path("/dev/shm").is_dir() else 
 
 
 def one_input(data: bytes) -> None:
-    """One file: its first byte says whether a sample rate and a part are given."""
+    """One file: its first byte says whether a rate and a part are given, and whether the rest is to be compressed."""
     if not data:
         return
     path = FOLDER / "file"
-    path.write_bytes(data[1:])
+    path.write_bytes(zstandard.compress(data[1:]) if data[0] & 4 else data[1:])
     try:
         read(path, sample_rate=1000.0 if data[0] & 1 else None, part="axis" if data[0] & 2 else None)
     except MeasurementError as error:
@@ -53,6 +53,8 @@ def main() -> None:
         os.makedirs(folders[0], exist_ok=True)
         for name, content in valid_files().items():
             (Path(folders[0]) / name.replace(" ", "_")).write_bytes(b"\0" + content)
+            if name.startswith("stdata"):  # the lines of JSON themselves
+                (Path(folders[0]) / f"{name}_unpacked").write_bytes(b"\6" + zstandard.decompress(content))
     warnings.simplefilter("error")
     atheris.Setup(sys.argv, one_input)
     atheris.Fuzz()

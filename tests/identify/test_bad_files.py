@@ -166,3 +166,26 @@ def test_any_prefix_of_a_file_reads_or_says_why(tmp_path):
                 read(path)
             except MeasurementError as error:
                 assert "\n" not in str(error)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "freq,w(" + "=" * 60_000 + "\n" + "0.0,1\n1.6,1\n" * 9,
+        "# sample_rate: x" + " " * 60_000 + "y\n1\n2\n3\n",
+        "time," + "(" * 60_000 + "\n0,1\n1,2\n2,1\n",
+        "time," + " " * 30_000 + "(a" * 10_000 + "\n0,1\n1,2\n2,1\n",
+        "Sample,X" + " " * 60_000 + "\n0,1\n1,2\n2,1\nRate 9" + " " * 3_000 + "x\n",
+        '"' * 60_000 + "\n1,2\n3,4\n",
+        "time,x\n0,1\n1," + "9" * 150_000 + "\n2,1\n",
+        "time,x\n0,1\n1," + '"' + "9" * 150_000 + "\n2,1\n",
+    ],
+)
+def test_absurdly_long_names_do_not_hang(tmp_path, text):
+    """Patterns that search them would need minutes: a failure here is a test that does not end."""
+    path = tmp_path / "file.csv"
+    path.write_text(text)
+    try:
+        read(path)
+    except MeasurementError as error:
+        assert len(str(error)) - len(str(path)) < 300

@@ -272,3 +272,18 @@ def test_universal_file_of_spectra_and_of_what_is_not_read(tmp_path):
 def test_a_part_of_what_has_none(tmp_path):
     with pytest.raises(MeasurementError, match="holds one measurement; leave part out"):
         read(write(tmp_path, "time,x\n0,1\n0.1,2\n0.2,1\n"), part="x")
+
+
+def test_rates_that_contradict_each_other(tmp_path):
+    np.savez(tmp_path / "a.npz", x=np.arange(50.0), fs=1000.0, dt=0.01)
+    with pytest.raises(MeasurementError, match="1000 Hz was given, but the file itself says 100 Hz"):
+        read(tmp_path / "a.npz")
+
+
+def test_what_is_not_wanted_may_be_of_any_kind(tmp_path):
+    np.savez(tmp_path / "a.npz", x=np.arange(50.0), picture=np.ones((3, 4, 5)), fs=1000.0)
+    with pytest.raises(MeasurementError, match="'picture' has 3 axes"):
+        read(tmp_path / "a.npz")
+    assert read(tmp_path / "a.npz", part="x").values.shape == (1, 50)
+    with pytest.raises(MeasurementError, match="called .nope.; there are x, picture"):
+        read(tmp_path / "a.npz", part="nope")

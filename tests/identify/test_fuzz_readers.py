@@ -63,6 +63,22 @@ def test_damaged_files(folder, name, data):
     reads_or_says_why(folder, bytes(content), data.draw(st.sampled_from([None, 1000.0])))
 
 
+@settings(max_examples=100, deadline=None)
+@given(
+    st.integers(0, 300),
+    st.sampled_from(
+        [b"", b"[", b"null", b"1e999", b"NaN", b'"', b"\xff", b"\n", b"[[0,1,2]]", b"\x80\x04", b'{"name":1}']
+    ),
+    st.integers(0, 30),
+)
+def test_damaged_lines_of_json(folder, at, put, dropped):
+    """A .stdata whose compression is sound and whose content is not."""
+    zstandard = pytest.importorskip("zstandard")
+    content = bytearray(zstandard.ZstdDecompressor().decompressobj().decompress(FILES["stdata"]))
+    content[at : at + dropped] = put
+    reads_or_says_why(folder, zstandard.ZstdCompressor().compress(bytes(content)))
+
+
 @settings(max_examples=150, deadline=None)
 @given(st.binary(max_size=400), st.sampled_from(sorted({content[:12] for content in FILES.values()} | {b""})))
 @example(b"0,1\n0,2\n", b"")

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests.identify.simulation import decay, swept_machine
 
 from preshape.identify import TimeSeries
-from preshape.identify.motor_lines import LOWEST_LINE, WINDOW, without_motor_lines
+from preshape.identify.motor_lines import GATE, LOWEST_LINE, without_motor_lines
 from preshape.identify.sensor_checks import sensor_trouble
 
 
@@ -94,8 +94,8 @@ def test_a_motor_line_is_taken_out_and_the_ringing_stays(line):
     assert named and abs(float(named[1]) - line) <= 1.5
     left = clean[0] - ring
     assert np.std(left) < 0.25 * np.std(0.3 * hum)  # what is left is noise and the edges of the move
-    after = slice(int((0.7 + WINDOW) * 1391), None)
-    assert np.std((clean[0] - ring)[after]) < 1.2 * 0.005  # a window after the stop nothing is added
+    after = slice(int((0.7 + GATE) * 1391), None)
+    assert np.std((clean[0] - ring)[after]) < 1.2 * 0.005  # nothing is smeared past the stop
 
 
 def test_what_rings_above_the_structural_modes_is_no_motor_line():

@@ -3,6 +3,7 @@
 import io
 import json
 import struct
+from importlib.util import find_spec
 
 import numpy as np
 from scipy.io import savemat, wavfile
@@ -45,8 +46,9 @@ def valid_files():
         stream = io.BytesIO()
         save(stream)
         binary[name] = stream.getvalue()
-    binary["uff"] = universal(values[:, 0], False)
-    binary["uff binary"] = universal(values[:, 0], True)
+    if find_spec("pyuff"):
+        binary["uff"] = universal(values[:, 0], False)
+        binary["uff binary"] = universal(values[:, 0], True)
     try:
         import zstandard
     except ImportError:

@@ -9,7 +9,7 @@ import numpy as np
 from preshape.errors import MeasurementError
 from preshape.identify.measurement import TimeSeries
 from preshape.identify.source_file import SourceFile
-from preshape.identify.text import cells, check_increasing, check_rate, parse_table
+from preshape.identify.text import LONGEST_NAME, cells, check_increasing, check_rate, parse_table
 from preshape.identify.time_column import uniform
 from preshape.identify.wanted import Wanted
 
@@ -113,7 +113,7 @@ def _is_number(cell: str) -> bool:
 def _commented_rate(lines: list[str], source: str) -> float | None:
     """The rate in a `# sample_rate: 1000` comment above the table."""
     for line in lines[: _first_data_line(lines)]:
-        match = _RATE.match(line.strip())
+        match = _RATE.match(line.strip()) if len(line) <= LONGEST_NAME else None
         if match:
             if not _is_number(match[1]) or not (np.isfinite(float(match[1])) and float(match[1]) > 0.0):
                 raise MeasurementError(
@@ -125,7 +125,7 @@ def _commented_rate(lines: list[str], source: str) -> float | None:
 
 def _units(names: list[str]) -> tuple[tuple[str, ...], str]:
     """Channel names and their unit when all have the same one; names with their units otherwise."""
-    matches = [_UNIT.match(name) for name in names]
+    matches = [_UNIT.match(name) if len(name) <= LONGEST_NAME else None for name in names]
     units = {match[2].strip() if match else "" for match in matches}
     if len(units) > 1:
         return tuple(names), ""

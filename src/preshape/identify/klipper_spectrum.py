@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from preshape.errors import MeasurementError
 from preshape.identify.measurement import PrintedSpectrum, Spectrum
 from preshape.identify.source_file import SourceFile
-from preshape.identify.text import cells, check_fixed_decimals, check_increasing, parse_table
+from preshape.identify.text import LONGEST_NAME, cells, check_fixed_decimals, check_increasing, parse_table
 from preshape.identify.wanted import Wanted
 
 __all__ = ["FORMAT", "read", "recognises"]
@@ -54,7 +54,7 @@ def read(file: SourceFile, wanted: Wanted) -> Spectrum:
         raise MeasurementError(f"{source}: this is a spectrum, which has no sample rate; leave sample_rate out.")
     header = cells(file.head[0])
     names = header[1:]
-    shapers = next((i for i, name in enumerate(names) if name.lower() == "shapers:" or _SHAPER.match(name)), None)
+    shapers = next((i for i, name in enumerate(names) if name.lower() == "shapers:" or _is_shaper(name)), None)
     data = names if shapers is None else names[:shapers]
     lowered = [name.lower() for name in data]
     if any(name.startswith("psd_") for name in lowered):
@@ -101,6 +101,10 @@ def read(file: SourceFile, wanted: Wanted) -> Spectrum:
         format=FORMAT,
         printed=PrintedSpectrum(table[:, 0], table[:, [1 + column for column in scored]].T) if scored else None,
     )
+
+
+def _is_shaper(name: str) -> bool:
+    return len(name) <= LONGEST_NAME and bool(_SHAPER.match(name))
 
 
 def true_grid(rounded: NDArray[np.float64]) -> NDArray[np.float64]:

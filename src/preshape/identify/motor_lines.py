@@ -23,6 +23,10 @@ WINDOW = 0.18
 LOWEST_LINE = STRUCTURAL + 2.0 / WINDOW
 """Lines below this frequency [Hz] are left alone: they cannot be taken out without touching structural modes."""
 
+GATE = 0.02
+"""Length of the shorter windows [s] in which it is asked whether taking a line out leaves less power: a line must not
+be smeared past the stop, into the ringing that matters."""
+
 FEWEST_WINDOWS = 5
 """A record shorter than so many half windows does not tell persistence."""
 
@@ -54,8 +58,8 @@ def without_motor_lines(values: _Array, rate: float) -> tuple[_Array, tuple[str,
     -------
     values : ndarray, shape (axis, sample)
         In each of the half overlapping Hann windows the sinusoid of the line's frequency that fits best in the least
-        squares sense is subtracted: a notch 1/WINDOW wide to each side which follows the amplitude, so that a
-        window after the motor has stopped nothing is added.
+        squares sense is subtracted, wherever that leaves less power: a notch 1/WINDOW wide to each side which
+        follows the amplitude and ends where the motor stops.
     remarks : tuple of str
         Empty when there was no line.
     """
@@ -68,18 +72,19 @@ def without_motor_lines(values: _Array, rate: float) -> tuple[_Array, tuple[str,
     before = float(np.sum(rest**2))
     found: list[float] = []
     while len(found) < MOST_LINES and (line := _loudest_line(rest, rate, length, found)) is not None:
-        rest = rest - _sinusoid(rest, line / rate, length)
+        part = _sinusoid(rest, line / rate, length)
+        rest = rest - _gate(rest, part, 2 * int(0.5 * GATE * rate)) * part
         found.append(line)
     if not found:
         return values, ()
-    part = 1.0 - float(np.sum(rest**2)) / before
+    removed = 1.0 - float(np.sum(rest**2)) / before
     # A line that wanders is taken out in several goes; it is named once.
     apart = [line for k, line in enumerate(found) if all(abs(line - other) > 2.0 / WINDOW for other in found[:k])]
     named = ", ".join(f"{line:.0f}" for line in sorted(apart))
     plural = "s" if len(apart) > 1 else ""
     remark = (
-        f"motor line{plural} at {named} Hz taken out, {100.0 * part:.0f} % of the record's power: loud as long as the "
-        "machine moves, so no resonance."
+        f"motor line{plural} at {named} Hz taken out, {100.0 * removed:.0f} % of the record's power: loud as long as "
+        "the machine moves, so no resonance."
     )
     return rest + offset, (remark,)
 
@@ -114,3 +119,16 @@ def _sinusoid(rest: _Array, frequency: float, length: int) -> _Array:
         amplitude = 2.0 * (window * weights) @ phase / weights.sum()
         part[:, begin : begin + length] += weights * np.real(amplitude[:, None] * np.conj(phase))
     return part[:, half : half + rest.shape[-1]]
+
+
+def _gate(rest: _Array, part: _Array, length: int) -> _Array:
+    """1 where taking the part out leaves less power, 0 where it would add some, shape (sample,), without steps."""
+    half = length // 2
+    padded = [np.pad(one, ((0, 0), (half, length + half))) for one in (rest, rest - part)]
+    weights = np.hanning(length + 1)[:-1]
+    gate = np.zeros(padded[0].shape[-1])
+    for begin in range(0, rest.shape[-1] + half, half):
+        before, after = (float(np.sum(weights * one[:, begin : begin + length] ** 2)) for one in padded)
+        if after < before:
+            gate[begin : begin + length] += weights
+    return gate[half : half + rest.shape[-1]]

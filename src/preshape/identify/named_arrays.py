@@ -46,6 +46,11 @@ def series_of(arrays: Mapping[str, NDArray[Any]], source: str, wanted: Wanted, n
     MeasurementError
         If there is no record or no rate, or more than one record.
     """
+    part = wanted.part
+    if part is not None:  # what else is in the file may be of any kind
+        names = [key for key in arrays if not _is_clock(key)]
+        part = names[pick_part(names, part, source)]
+        arrays = {key: value for key, value in arrays.items() if key == part or _is_clock(key)}
     numbers = {key: _real(value, key, source) for key, value in arrays.items() if value.size > 0}
     single = {key: float(value.flat[0]) for key, value in numbers.items() if value.size == 1}
     rate = wanted.sample_rate
@@ -54,12 +59,12 @@ def series_of(arrays: Mapping[str, NDArray[Any]], source: str, wanted: Wanted, n
         if found is not None:
             if not (np.isfinite(found) and found > 0.0):
                 raise MeasurementError(f"{source}: {key!r} is {value!r}, which is no sample rate; correct it.")
-            check_rate(wanted.sample_rate, found, source)
+            check_rate(rate, found, source)  # also one name against another: fs against dt
             rate = found
     vectors = {key: value for key, value in numbers.items() if value.size > 1}
     clock = next((key for key, value in vectors.items() if _TIME.match(key) and value.ndim == 1), None)
     times = vectors.pop(clock) if clock is not None else None
-    values, channels = _record(vectors, times, wanted.part, source)
+    values, channels = _record(vectors, times, part, source)
     if times is None and rate is None:
         if len(values) < 2:
             raise MeasurementError(
@@ -76,6 +81,11 @@ def series_of(arrays: Mapping[str, NDArray[Any]], source: str, wanted: Wanted, n
         rate, start = found, float(times[0])
     assert rate is not None
     return TimeSeries(rate, start, values, channels, "", source, name)
+
+
+def _is_clock(key: str) -> bool:
+    """Whether an array may be the time or the rate."""
+    return any(pattern.match(key) for pattern in (_TIME, _RATE, _INTERVAL))
 
 
 def _real(array: NDArray[Any], name: str, source: str) -> _Array:
@@ -102,14 +112,13 @@ def _record(
     if array.ndim == 1:
         values = array[None, :]
     else:
-        long = array.shape.index(max(array.shape)) if times is None else None
-        fits = [axis for axis in (0, 1) if array.shape[axis] == len(times)] if times is not None else [long]
-        if array.shape[0] == array.shape[1] or len(fits) != 1:
+        length = max(array.shape) if times is None else len(times)
+        if array.shape[0] == array.shape[1] or length not in array.shape:
             raise MeasurementError(
                 f"{source}: which axis of {_short(name)}, shape {array.shape}, is time cannot be told; "
                 "add a time vector as long as that axis."
             )
-        values = array.T if fits[0] == 0 else array
+        values = array.T if array.shape[0] == length else array
     if times is not None and values.shape[-1] != len(times):
         raise MeasurementError(
             f"{source}: {_short(name)} has {values.shape[-1]} samples and the time has {len(times)}; "

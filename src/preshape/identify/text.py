@@ -19,10 +19,22 @@ from numpy.typing import NDArray
 from preshape.errors import MeasurementError
 from preshape.identify.source_file import SourceFile
 
-__all__ = ["Table", "cells", "check_fixed_decimals", "check_increasing", "check_rate", "parse_table", "printable"]
+__all__ = [
+    "LONGEST_NAME",
+    "Table",
+    "cells",
+    "check_fixed_decimals",
+    "check_increasing",
+    "check_rate",
+    "parse_table",
+    "printable",
+]
 
 SHOWN_CELL = 24
 """Characters of a wrong cell that an error message shows."""
+
+LONGEST_NAME = 200
+"""Characters; what is longer is no name of a column and no comment with a rate, and is not searched for one."""
 
 RATE_TOLERANCE = 0.01
 """Relative difference at which a given sample rate contradicts the one in the file."""
