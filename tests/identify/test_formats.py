@@ -287,3 +287,10 @@ def test_what_is_not_wanted_may_be_of_any_kind(tmp_path):
     assert read(tmp_path / "a.npz", part="x").values.shape == (1, 50)
     with pytest.raises(MeasurementError, match="called .nope.; there are x, picture"):
         read(tmp_path / "a.npz", part="nope")
+
+
+def test_short_numbers_that_would_fill_the_memory(tmp_path):
+    """A byte in the file is eight in memory: the limit counts numbers."""
+    np.savez_compressed(tmp_path / "a.npz", x=np.zeros(25_000_001, dtype=np.int8), fs=1000.0)
+    with pytest.raises(MeasurementError, match="25 million numbers and at most 25 are taken"):
+        read(tmp_path / "a.npz")

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from preshape.errors import InputError
-from preshape.identify import Spectrum, TimeSeries, read
+from preshape.identify import Spectrum, TimeSeries, find_modes, read
 
 AXES = "freq,psd_x,psd_y,psd_z,psd_xyz"
 
@@ -189,3 +189,22 @@ def test_a_long_file_streams_through_without_a_copy(tmp_path):
 def test_sample_rate_must_be_a_rate(tmp_path):
     with pytest.raises(InputError, match="sample_rate"):
         read(write(tmp_path, "1\n2\n"), sample_rate=-1.0)
+
+
+def test_samples_that_a_capture_skips_are_remarked(tmp_path):
+    rows = "".join(f"{k},0.{k % 7}\n" for k in range(100) if k not in (40, 41, 70))
+    series = read(write(tmp_path, f"Sample,X\n{rows}Rate 1000, overflows 0\n"))
+    assert series.remarks == ("samples are missing: the sample numbers skip 3 in 2 places.",)
+
+
+def test_what_is_wrong_with_the_sensor_is_remarked(tmp_path):
+    """A record in mm/s^2 whose header says g; the sentence reaches who looks for modes."""
+    wave = 2000.0 * np.exp(-0.01 * np.arange(1000)) * np.sin(0.3 * np.arange(1000))
+    noise = np.random.default_rng(0).normal(size=1000)
+    rows = "".join(
+        f"{k / 1000:.3f},{a:.3f},{9806.65 + b:.3f}\n" for k, (a, b) in enumerate(zip(wave, noise, strict=True))
+    )
+    series = read(write(tmp_path, "time [s],x [g],z [g]\n" + rows))
+    (sentence,) = series.remarks
+    assert "gravity in mm/s^2 and not in g" in sentence
+    assert sentence in find_modes(series).trouble

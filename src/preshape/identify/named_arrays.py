@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from preshape.errors import MeasurementError
 from preshape.identify.measurement import TimeSeries
+from preshape.identify.source_file import MOST_NUMBERS
 from preshape.identify.text import check_increasing, check_rate
 from preshape.identify.time_column import uniform
 from preshape.identify.wanted import Wanted, pick_part
@@ -93,6 +94,11 @@ def _real(array: NDArray[Any], name: str, source: str) -> _Array:
     squeezed = np.squeeze(array)
     if squeezed.ndim > 2:
         raise MeasurementError(f"{source}: {_short(name)} has {squeezed.ndim} axes; a record has one or two.")
+    if squeezed.size > MOST_NUMBERS:
+        raise MeasurementError(
+            f"{source}: {_short(name)} holds {squeezed.size / 1e6:.0f} million numbers and at most "
+            f"{MOST_NUMBERS / 1e6:.0f} are taken; cut the part that holds the vibration."
+        )
     number = squeezed.astype(np.float64)
     if not (np.isfinite(number.min()) and np.isfinite(number.max())):
         raise MeasurementError(f"{source}: {_short(name)} holds NaN or infinity; a record has finite numbers only.")

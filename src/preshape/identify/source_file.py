@@ -18,10 +18,13 @@ from typing import BinaryIO
 
 from preshape.errors import MeasurementError
 
-__all__ = ["MAXIMUM_FILE_SIZE", "SourceFile", "open_source"]
+__all__ = ["MAXIMUM_FILE_SIZE", "MOST_NUMBERS", "SourceFile", "open_source"]
 
 MAXIMUM_FILE_SIZE = 200_000_000
 """Files of this size [bytes] and above are refused before anything is read (about 80 minutes of Klipper raw data)."""
+
+MOST_NUMBERS = MAXIMUM_FILE_SIZE // 8
+"""Numbers that a binary file may hold: in memory each takes eight bytes, however short it is in the file."""
 
 BEGINNING = 65_536
 """Bytes at the beginning in which comments, header and first rows of a text file must stand."""

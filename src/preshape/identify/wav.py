@@ -9,7 +9,7 @@ import numpy as np
 
 from preshape.errors import MeasurementError
 from preshape.identify.measurement import TimeSeries
-from preshape.identify.source_file import SourceFile
+from preshape.identify.source_file import MOST_NUMBERS, SourceFile
 from preshape.identify.text import check_rate, printable
 from preshape.identify.wanted import Wanted
 
@@ -42,6 +42,11 @@ def read(file: SourceFile, wanted: Wanted) -> TimeSeries:
         raise MeasurementError(
             f"{file.name}: the WAV file is damaged or compressed ({words}); save it as PCM."
         ) from None
+    if samples.size > MOST_NUMBERS:
+        raise MeasurementError(
+            f"{file.name}: the file holds {samples.size / 1e6:.0f} million samples and at most "
+            f"{MOST_NUMBERS / 1e6:.0f} are taken; cut the part that holds the vibration."
+        )
     values = np.atleast_2d(samples.T).astype(np.float64)
     if values.ndim != 2 or not 1 <= len(values) <= MOST_CHANNELS or values.shape[-1] < MINIMUM_SAMPLES or rate <= 0:
         raise MeasurementError(
