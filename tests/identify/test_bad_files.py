@@ -107,10 +107,10 @@ def test_unreadable(tmp_path, monkeypatch):
     path = tmp_path / "file.csv"
     path.write_text(RAW + RAW_ROWS)
 
-    def refuse(self):
+    def refuse(self, *arguments, **keywords):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr("pathlib.Path.read_bytes", refuse)  # chmod does not bind the superuser
+    monkeypatch.setattr("pathlib.Path.open", refuse)  # chmod does not bind the superuser
     with pytest.raises(MeasurementError, match="cannot be read .permission denied"):
         read(path)
 
@@ -119,7 +119,7 @@ def test_large_file_is_refused_without_reading(tmp_path, monkeypatch):
     path = tmp_path / "large.csv"
     with path.open("wb") as file:
         file.truncate(MAXIMUM_FILE_SIZE)  # sparse: no disk is used
-    monkeypatch.setattr("pathlib.Path.read_bytes", lambda self: pytest.fail("the file was read"))
+    monkeypatch.setattr("pathlib.Path.open", lambda *_, **__: pytest.fail("the file was read"))
     with pytest.raises(MeasurementError, match="200 MB"):
         read(path)
 
@@ -166,3 +166,26 @@ def test_any_prefix_of_a_file_reads_or_says_why(tmp_path):
                 read(path)
             except MeasurementError as error:
                 assert "\n" not in str(error)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "freq,w(" + "=" * 60_000 + "\n" + "0.0,1\n1.6,1\n" * 9,
+        "# sample_rate: x" + " " * 60_000 + "y\n1\n2\n3\n",
+        "time," + "(" * 60_000 + "\n0,1\n1,2\n2,1\n",
+        "time," + " " * 30_000 + "(a" * 10_000 + "\n0,1\n1,2\n2,1\n",
+        "Sample,X" + " " * 60_000 + "\n0,1\n1,2\n2,1\nRate 9" + " " * 3_000 + "x\n",
+        '"' * 60_000 + "\n1,2\n3,4\n",
+        "time,x\n0,1\n1," + "9" * 150_000 + "\n2,1\n",
+        "time,x\n0,1\n1," + '"' + "9" * 150_000 + "\n2,1\n",
+    ],
+)
+def test_absurdly_long_names_do_not_hang(tmp_path, text):
+    """Patterns that search them would need minutes: a failure here is a test that does not end."""
+    path = tmp_path / "file.csv"
+    path.write_text(text)
+    try:
+        read(path)
+    except MeasurementError as error:
+        assert len(str(error)) - len(str(path)) < 300

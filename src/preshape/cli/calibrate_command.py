@@ -28,6 +28,8 @@ __all__ = ["command"]
     help="Damping ratio of the modes, if you know it better than the file shows it.",
 )
 @sample_rate_option()
+@click.option("--part", metavar="NAME", help="Which measurement, or how its name begins, in files that hold several.")
+@click.option("--mixed", is_flag=True, help="The files are of several axes or machines on purpose.")
 @click.option(
     "--out",
     type=click.Path(file_okay=False, path_type=Path),
@@ -40,12 +42,15 @@ def command(
     tolerance: float,
     damping: float | None,
     sample_rate: float | None,
+    part: str | None,
+    mixed: bool,
     out: Path | None,
 ) -> None:
     """From vibration measurements of one axis to a shaper: modes, candidates, choice and reason.
 
-    FILE is a Klipper raw_data, resonances or calibration_data file, a RepRapFirmware capture, or a CSV table with a
-    time column; several files of one machine are served by one shaper.
+    FILE is a Klipper raw_data, resonances or calibration_data file, a Shake&Tune .stdata, a RepRapFirmware capture, a
+    Prusa M958 report, a universal file, NumPy, MATLAB, WAV, or a CSV table with a time column; several files of one
+    axis are served by one shaper.
     """
     from preshape.cli.screens import calibration_screen, console
     from preshape.workflow import calibrate, save_calibration
@@ -53,7 +58,13 @@ def command(
     progress = console(stderr=True)
     with progress.status("reading, finding the modes, designing ..."):
         calibration = calibrate(
-            files, maximum_impulses=maximum_impulses, tolerance=tolerance, damping=damping, sample_rate=sample_rate
+            files,
+            maximum_impulses=maximum_impulses,
+            tolerance=tolerance,
+            damping=damping,
+            sample_rate=sample_rate,
+            part=part,
+            mixed=mixed,
         )
     calibration_screen(calibration)
     if out is None:

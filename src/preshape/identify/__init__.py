@@ -8,8 +8,8 @@ from preshape.identify.measurement import Measurement, PrintedSpectrum, Spectrum
 from preshape.identify.merge_modes import merged_modes
 from preshape.identify.operational_modes import operational_modes
 from preshape.identify.readers import read
+from preshape.identify.source_file import MAXIMUM_FILE_SIZE
 from preshape.identify.stabilisation import Stabilisation
-from preshape.identify.text import MAXIMUM_FILE_SIZE
 from preshape.identify.welch import spectrum
 
 __all__ = [

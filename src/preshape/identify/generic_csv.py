@@ -5,22 +5,19 @@ from __future__ import annotations
 import re
 
 import numpy as np
-from numpy.typing import NDArray
 
 from preshape.errors import MeasurementError
 from preshape.identify.measurement import TimeSeries
-from preshape.identify.text import Table, cells, check_increasing, check_rate, parse_table
+from preshape.identify.source_file import SourceFile
+from preshape.identify.text import LONGEST_NAME, cells, check_increasing, check_rate, parse_table
+from preshape.identify.time_column import uniform
+from preshape.identify.wanted import Wanted
 
 __all__ = ["FORMAT", "read", "recognises"]
 
 FORMAT = "time series"
 MINIMUM_ROWS = 2
 DELIMITERS = (",", ";", "\t")
-LONGEST_STEP = 1.75
-"""A step of time longer than this many mean steps is a gap, not jitter: the file is refused."""
-
-JITTER = 0.01
-"""Time stamps within this part of a step of a uniform grid are uniform; beyond it samples are interpolated."""
 
 _RATE = re.compile(r"#\s*sample[_ ]?rate\s*[:=]\s*(\S+?)\s*(?:hz)?\s*$", re.IGNORECASE)
 _TIME = re.compile(r"(?:time|t|seconds|timestamps?)(?:[\s_]*[\[(]?(s|ms|us|sec|seconds)[\])]?)?$", re.IGNORECASE)
@@ -29,8 +26,9 @@ _UNIT = re.compile(r"^(.*?)\s*[\[(]([^\])]+)[\])]$")
 _SECONDS = {"ms": 1e-3, "us": 1e-6}
 
 
-def recognises(lines: list[str]) -> bool:
+def recognises(file: SourceFile) -> bool:
     """True when the first or second line below the comments is a row of numbers."""
+    lines = file.head
     top = _first_data_line(lines)
     for line in lines[top : top + 2]:
         found = cells(line, _delimiter(line))
@@ -39,15 +37,16 @@ def recognises(lines: list[str]) -> bool:
     return top < len(lines) - 1 and any(_TIME.match(cell) for cell in cells(lines[top], _delimiter(lines[top])))
 
 
-def read(lines: list[str], source: str, sample_rate: float | None) -> TimeSeries:
-    """Read a table; `sample_rate` [Hz], or a comment `# sample_rate: 1000`, stands in for a time column."""
-    rate = sample_rate if sample_rate is not None else _commented_rate(lines, source)
+def read(file: SourceFile, wanted: Wanted) -> TimeSeries:
+    """Read a table; a sample rate [Hz], or a comment `# sample_rate: 1000`, stands in for a time column."""
+    lines, source = file.head, file.name
+    rate = wanted.sample_rate if wanted.sample_rate is not None else _commented_rate(lines, source)
     top = _first_data_line(lines)
     delimiter = _table_delimiter(lines, top)
     names = [cell.lstrip("#").strip() for cell in cells(lines[top], delimiter)]
     has_header = not all(_is_number(cell) for cell in names)
     first = top + has_header
-    table = parse_table(lines[first:], first + 1, len(names), source, delimiter=delimiter)
+    table = parse_table(file, first, len(names), delimiter=delimiter)
     if len(table) < MINIMUM_ROWS:
         raise MeasurementError(
             f"{source}: the file has {len(table)} rows of numbers; a measurement needs many, record it again."
@@ -75,7 +74,7 @@ def read(lines: list[str], source: str, sample_rate: float | None) -> TimeSeries
         scale = _SECONDS.get((match[1] or "").lower(), 1.0) if match else 1.0
         times = scale * table[:, time]
         check_increasing(times, "time", first + 1, source)
-        found, values = _uniform(times, values, first + 1, source)
+        found, values = uniform(times, values, first + 1, source)
         check_rate(rate, found, source)
         rate, start = found, float(times[0])
     assert rate is not None
@@ -114,7 +113,7 @@ def _is_number(cell: str) -> bool:
 def _commented_rate(lines: list[str], source: str) -> float | None:
     """The rate in a `# sample_rate: 1000` comment above the table."""
     for line in lines[: _first_data_line(lines)]:
-        match = _RATE.match(line.strip())
+        match = _RATE.match(line.strip()) if len(line) <= LONGEST_NAME else None
         if match:
             if not _is_number(match[1]) or not (np.isfinite(float(match[1])) and float(match[1]) > 0.0):
                 raise MeasurementError(
@@ -126,35 +125,8 @@ def _commented_rate(lines: list[str], source: str) -> float | None:
 
 def _units(names: list[str]) -> tuple[tuple[str, ...], str]:
     """Channel names and their unit when all have the same one; names with their units otherwise."""
-    matches = [_UNIT.match(name) for name in names]
+    matches = [_UNIT.match(name) if len(name) <= LONGEST_NAME else None for name in names]
     units = {match[2].strip() if match else "" for match in matches}
     if len(units) > 1:
         return tuple(names), ""
     return tuple(match[1].strip() if match else name for match, name in zip(matches, names, strict=True)), units.pop()
-
-
-def _uniform(times: NDArray[np.float64], values: Table, first_line: int, source: str) -> tuple[float, Table]:
-    """Sample rate [Hz] and the values (channel, sample) on a uniform grid of the same times."""
-    step = float(times[-1] - times[0]) / (len(times) - 1)
-    steps = np.diff(times)
-    worst = int(np.argmax(steps))
-    if steps[worst] > LONGEST_STEP * step:
-        raise MeasurementError(
-            f"{source}: the time steps are too uneven, from {steps.min():.3g} s to {steps[worst]:.3g} s "
-            f"(data row {worst + 2}, about line {first_line + worst + 1}) around a mean of {step:.3g} s; "
-            "resample the data or cut the gap."
-        )
-    grid = times[0] + step * np.arange(len(times))
-    deviation = float(np.max(np.abs(times - grid)))
-    if deviation > JITTER * step and deviation > _resolution(times):
-        values = np.array([np.interp(grid, times, channel) for channel in values])
-    return 1.0 / step, values
-
-
-def _resolution(times: NDArray[np.float64]) -> float:
-    """The decimal step to which the time stamps were rounded [s]: a deviation within it is rounding, not jitter."""
-    for decimals in range(10):
-        scaled = times * 10.0**decimals
-        if np.all(np.abs(scaled - np.round(scaled)) < 1e-3):
-            return 10.0**-decimals
-    return 0.0

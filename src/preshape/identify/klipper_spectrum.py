@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from preshape.errors import MeasurementError
 from preshape.identify.measurement import PrintedSpectrum, Spectrum
-from preshape.identify.text import cells, check_fixed_decimals, check_increasing, parse_table
+from preshape.identify.source_file import SourceFile
+from preshape.identify.text import LONGEST_NAME, cells, check_fixed_decimals, check_increasing, parse_table
+from preshape.identify.wanted import Wanted
 
 __all__ = ["FORMAT", "read", "recognises"]
 
@@ -39,18 +41,20 @@ _SHAPER = re.compile(
 )
 
 
-def recognises(lines: list[str]) -> bool:
+def recognises(file: SourceFile) -> bool:
     """True for a file whose first line begins with a frequency column."""
-    return lines[0].strip().lower().startswith(("freq,", '"freq",')) or lines[0].strip().lower() == "freq"
+    first = file.head[0].strip().lower()
+    return first.startswith(("freq,", '"freq",')) or first == "freq"
 
 
-def read(lines: list[str], source: str, sample_rate: float | None) -> Spectrum:
+def read(file: SourceFile, wanted: Wanted) -> Spectrum:
     """Read a spectrum: the density of three axes, or of several datasets."""
-    if sample_rate is not None:
+    source = file.name
+    if wanted.sample_rate is not None:
         raise MeasurementError(f"{source}: this is a spectrum, which has no sample rate; leave sample_rate out.")
-    header = cells(lines[0])
+    header = cells(file.head[0])
     names = header[1:]
-    shapers = next((i for i, name in enumerate(names) if name.lower() == "shapers:" or _SHAPER.match(name)), None)
+    shapers = next((i for i, name in enumerate(names) if name.lower() == "shapers:" or _is_shaper(name)), None)
     data = names if shapers is None else names[:shapers]
     lowered = [name.lower() for name in data]
     if any(name.startswith("psd_") for name in lowered):
@@ -68,8 +72,8 @@ def read(lines: list[str], source: str, sample_rate: float | None) -> Spectrum:
         scored = picked
     if not channels:
         raise MeasurementError(f"{source}: the header names no density column after 'freq'; export the spectrum again.")
-    table = parse_table(lines[1:], 2, len(header), source, used=1 + len(data))
-    check_fixed_decimals(lines[1:], 2, source)
+    table = parse_table(file, 1, len(header), used=1 + len(data))
+    check_fixed_decimals(file)
     if len(table) < MINIMUM_ROWS:
         raise MeasurementError(
             f"{source}: the spectrum has {len(table)} rows and at least {MINIMUM_ROWS} are needed; export it again."
@@ -97,6 +101,10 @@ def read(lines: list[str], source: str, sample_rate: float | None) -> Spectrum:
         format=FORMAT,
         printed=PrintedSpectrum(table[:, 0], table[:, [1 + column for column in scored]].T) if scored else None,
     )
+
+
+def _is_shaper(name: str) -> bool:
+    return len(name) <= LONGEST_NAME and bool(_SHAPER.match(name))
 
 
 def true_grid(rounded: NDArray[np.float64]) -> NDArray[np.float64]:

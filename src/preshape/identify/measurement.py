@@ -167,16 +167,29 @@ Measurement: TypeAlias = TimeSeries | Spectrum
 
 
 def _checked(array: NDArray[np.float64], channels: tuple[str, ...], name: str, axis: str) -> NDArray[np.float64]:
-    """A read-only copy-if-needed of `array`, shape (channel, axis), or a sentence why not."""
-    checked = np.array(array, dtype=np.float64)
+    """A read-only copy of `array`, shape (channel, axis), or a sentence why not; what cannot change is not copied."""
+    checked = array if _is_constant(array) else np.array(array, dtype=np.float64)
     if checked.ndim != 2 or checked.shape[0] != len(channels) or checked.size == 0:
         raise InputError(
             f"{name} of shape {checked.shape} do not fit {len(channels)} channel names: "
             f"give an array (channel, {axis})."
         )
-    if not np.all(np.isfinite(checked)):
+    lowest, highest = float(checked.min()), float(checked.max())  # NaN when any number is
+    if not (np.isfinite(lowest) and np.isfinite(highest)):
         raise InputError(f"{name} hold NaN or infinity: give finite numbers only.")
-    if float(np.abs(checked).max()) > LARGEST_VALUE:
+    if max(-lowest, highest) > LARGEST_VALUE:
         raise InputError(f"{name} hold numbers above {LARGEST_VALUE:g}, which no sensor gives: check the unit.")
     checked.flags.writeable = False
     return checked
+
+
+def _is_constant(array: object) -> bool:
+    """Whether it is an array of float64 that nobody can write to, not through what it is a view of either."""
+    if not isinstance(array, np.ndarray) or array.dtype != np.float64:
+        return False
+    part: object = array
+    while isinstance(part, np.ndarray):
+        if part.flags.writeable:
+            return False
+        part = part.base
+    return part is None

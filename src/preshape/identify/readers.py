@@ -3,14 +3,29 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 
 from preshape.errors import InputError, MeasurementError
-from preshape.identify import generic_csv, klipper_raw, klipper_spectrum, rrf_capture
-from preshape.identify.measurement import Measurement
-from preshape.identify.text import load_text
+from preshape.identify import (
+    generic_csv,
+    klipper_raw,
+    klipper_spectrum,
+    matlab,
+    numpy_arrays,
+    prusa_sweep,
+    rrf_capture,
+    shaketune,
+    universal_file,
+    wav,
+)
+from preshape.identify.measurement import Measurement, TimeSeries
+from preshape.identify.sensor_checks import sensor_trouble
+from preshape.identify.source_file import SourceFile, open_source
+from preshape.identify.text import printable
+from preshape.identify.wanted import Wanted
 
 __all__ = ["READERS", "Reader", "read"]
 
@@ -20,22 +35,37 @@ class Reader(Protocol):
 
     FORMAT: str
 
-    def recognises(self, lines: list[str], /) -> bool:
-        """Whether a file that begins with these lines (at least one, not blank) is of this format."""
+    def recognises(self, file: SourceFile, /) -> bool:
+        """Whether a file is of this format; looks at `file.begin`, or at `file.head` if the format is text."""
 
-    def read(self, lines: list[str], source: str, sample_rate: float | None, /) -> Measurement:
-        """The measurement in these lines; raises MeasurementError."""
+    def read(self, file: SourceFile, wanted: Wanted, /) -> Measurement:
+        """The measurement in the file; raises MeasurementError."""
 
 
-READERS: tuple[Reader, ...] = (klipper_raw, klipper_spectrum, rrf_capture, generic_csv)
+READERS: tuple[Reader, ...] = (
+    shaketune,
+    numpy_arrays,
+    matlab,
+    wav,
+    universal_file,  # binary until here; `file.head` says so of what is not text
+    klipper_raw,
+    prusa_sweep,
+    klipper_spectrum,
+    rrf_capture,
+    generic_csv,
+)
 """The formats, the most particular first. To add one: write its module, and put it in here."""
 
+CONTAINERS: tuple[Reader, ...] = (shaketune, numpy_arrays, matlab, universal_file)
+"""Those whose files may hold several measurements."""
 
-def read(path: str | os.PathLike[str], *, sample_rate: float | None = None) -> Measurement:
+
+def read(path: str | os.PathLike[str], *, sample_rate: float | None = None, part: str | None = None) -> Measurement:
     """Read a vibration measurement; the content decides on the format, not the name.
 
-    Known are Klipper's raw data, its resonances and calibration data, RepRapFirmware's captures, and tables with a time
-    column or a known sample rate.
+    Known are Klipper's raw data, its resonances and calibration data, Shake&Tune's .stdata, RepRapFirmware's captures,
+    Prusa's M958 report, universal files (dataset 58), NumPy and MATLAB arrays, WAV, and tables with a time column or a
+    known sample rate. The reference page on measurement files says what each must hold.
 
     Parameters
     ----------
@@ -43,11 +73,14 @@ def read(path: str | os.PathLike[str], *, sample_rate: float | None = None) -> M
         The file.
     sample_rate : float, optional
         Samples per second [Hz], for a table without a time column.
+    part : str, optional
+        Name of the measurement, or its beginning, for a file that holds several.
 
     Returns
     -------
     TimeSeries or Spectrum
-        What the file holds.
+        What the file holds; `remarks` says what is wrong with it: missing samples, a clipped sensor, a wrong unit,
+        aliasing.
 
     Raises
     ------
@@ -66,25 +99,41 @@ def read(path: str | os.PathLike[str], *, sample_rate: float | None = None) -> M
     """
     if sample_rate is not None and not (np.isfinite(sample_rate) and sample_rate > 0.0):
         raise InputError(f"sample_rate {sample_rate!r} Hz is not usable: give a finite rate above 0 Hz.")
-    source = os.fspath(path)
-    # split("\n"), not splitlines(): line numbers must be those an editor shows.
-    lines = load_text(path).replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    file = open_source(path)
+    wanted = Wanted(sample_rate, part)
     for reader in READERS:
-        if reader.recognises(lines):
-            if sum(1 for line in lines[:8] if line.strip()) < 2:
-                raise MeasurementError(
-                    f"{source}: the file has only one line; a measurement needs many, record it again."
-                )
-            try:
-                return reader.read(lines, source, sample_rate)
-            except MeasurementError:
-                raise
-            except InputError as error:  # what a measurement refuses, said of the file
-                raise MeasurementError(f"{source}: {error}") from None
-    if sum(1 for line in lines if line.strip()) < 2:
-        raise MeasurementError(f"{source}: the file has only one line; a measurement needs many, record it again.")
+        if reader.recognises(file):
+            # Absurd numbers overflow on the way; what they come to is refused, so no warning is needed.
+            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+                measurement = _read(reader, file, wanted)
+                found = sensor_trouble(measurement) if isinstance(measurement, TimeSeries) else ()
+            return replace(measurement, remarks=(*measurement.remarks, *found)) if found else measurement
+    _check_lines(file)
     known = ", ".join(reader.FORMAT for reader in READERS)
     raise MeasurementError(
-        f"{source}: the first line {lines[0].strip()[:40]!r} is not that of a known measurement "
+        f"{file.name}: the first line {printable(file.head[0].strip()[:40])!r} is not that of a known measurement "
         f"({known}); check the file."
     )
+
+
+def _read(reader: Reader, file: SourceFile, wanted: Wanted) -> Measurement:
+    if reader not in CONTAINERS:
+        if reader is not wav:
+            _check_lines(file)
+        if wanted.part is not None:
+            raise MeasurementError(
+                f"{file.name}: part={wanted.part!r} was given, but this file ({reader.FORMAT}) holds one measurement; "
+                "leave part out."
+            )
+    try:
+        return reader.read(file, wanted)
+    except MeasurementError:
+        raise
+    except InputError as error:  # what a measurement refuses, said of the file
+        raise MeasurementError(f"{file.name}: {error}") from None
+
+
+def _check_lines(file: SourceFile) -> None:
+    """Raise when a text file has a single line."""
+    if file.size <= len(file.begin) and sum(1 for line in file.head if line.strip()) < 2:
+        raise MeasurementError(f"{file.name}: the file has only one line; a measurement needs many, record it again.")

@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
+
 from preshape.errors import MeasurementError
 from preshape.identify.measurement import TimeSeries
+from preshape.identify.motor_lines import without_motor_lines
+from preshape.identify.source_file import SourceFile
 from preshape.identify.text import cells, check_increasing, check_rate, parse_table
+from preshape.identify.wanted import Wanted
 
 __all__ = ["FORMAT", "read", "recognises"]
 
@@ -16,41 +21,41 @@ BAD_SAMPLES = 1
 
 MINIMUM_ROWS = 2
 _HEADER = re.compile(r"sample(,[xyz])*\s*$", re.IGNORECASE)
-_TRAILER = re.compile(r"rate:?\s*(\d+(?:\.\d+)?)\s*,?\s*overflows:?\s*(\d+)\s*$", re.IGNORECASE)
+_TRAILER = re.compile(r"rate:?\s*(\d{1,9}(?:\.\d{1,9})?)\s*,?\s*overflows:?\s*(\d{1,9})\s*$", re.IGNORECASE)
 
 
-def recognises(lines: list[str]) -> bool:
+def recognises(file: SourceFile) -> bool:
     """True for a file whose first line is a sample column and axes."""
-    return bool(_HEADER.match(lines[0].strip().replace(" ", "")))
+    return bool(_HEADER.match(file.head[0].strip().replace(" ", "")))
 
 
-def read(lines: list[str], source: str, sample_rate: float | None) -> TimeSeries:
-    """Read a capture; the rate comes from its last line, or from the argument when that line is missing."""
-    axes = tuple(name.lower() for name in cells(lines[0])[1:])
+def read(file: SourceFile, wanted: Wanted) -> TimeSeries:
+    """Read a capture; the rate comes from its last line, or from `wanted` when that line is missing.
+
+    The lines of the motors are taken out (:mod:`preshape.identify.motor_lines`), and a remark says which.
+    """
+    source = file.name
+    axes = tuple(name.lower() for name in cells(file.head[0])[1:])
     if not axes:
         raise MeasurementError(f"{source}: the header has no axis column; a capture needs at least one of X, Y, Z.")
-    end = len(lines)
-    while end > 1 and not lines[end - 1].strip():
-        end -= 1
-    last = lines[end - 1].strip()
+    last = file.tail[-1].strip() if file.tail else ""
     trailer = _TRAILER.match(last)
-    remarks: tuple[str, ...] = ()
-    rate = sample_rate
+    remarks: list[str] = []
+    rate = wanted.sample_rate
     if trailer:
-        end -= 1
         rate = float(trailer[1])
         if rate <= 0.0:
             raise MeasurementError(
                 f"{source}: the last line says {last!r}; a rate of 0 means a failed capture, repeat it."
             )
-        check_rate(sample_rate, rate, source)
+        check_rate(wanted.sample_rate, rate, source)
         if int(trailer[2]):
-            remarks = (f"samples were lost while recording: the capture counts {trailer[2]} overflows.",)
-    elif end > 1 and last[:1].isalpha():
+            remarks.append(f"samples were lost while recording: the capture counts {trailer[2]} overflows.")
+    elif last[:1].isalpha() and not last.lower().startswith("sample"):
         raise MeasurementError(
             f"{source}: the capture ends with {last[:60]!r} instead of 'Rate ..., overflows ...'; repeat the capture."
         )
-    table = parse_table(lines[1:end], 2, 1 + len(axes), source)
+    table = parse_table(file, 1, 1 + len(axes), trailer=bool(trailer))
     if rate is None:
         raise MeasurementError(
             f"{source}: the last line 'Rate ..., overflows ...' is missing, so the sample rate is unknown; "
@@ -59,5 +64,9 @@ def read(lines: list[str], source: str, sample_rate: float | None) -> TimeSeries
     if len(table) < BAD_SAMPLES + MINIMUM_ROWS:
         raise MeasurementError(f"{source}: the capture has {len(table)} samples; a measurement needs many, repeat it.")
     check_increasing(table[:, 0], "sample number", 2, source)
-    values = table[BAD_SAMPLES:, 1:].T
-    return TimeSeries(rate, BAD_SAMPLES / rate, values, axes, "g", source, FORMAT, remarks)
+    missing = round(float(table[-1, 0] - table[0, 0])) + 1 - len(table)
+    if missing > 0:
+        gaps = int(np.count_nonzero(np.diff(table[:, 0]) > 1.5))
+        remarks.append(f"samples are missing: the sample numbers skip {missing} in {gaps} places.")
+    values, removed = without_motor_lines(table[BAD_SAMPLES:, 1:].T, rate)
+    return TimeSeries(rate, BAD_SAMPLES / rate, values, axes, "g", source, FORMAT, (*remarks, *removed))

@@ -1,4 +1,4 @@
-"""Text files with a table of numbers: loaded with a limit, parsed in bulk, never evaluated.
+"""Tables of numbers in text: parsed in bulk as the file streams by, never evaluated.
 
 The fast path is one bulk parse. Only when that fails is the file gone through line by line, to say which line and
 which cell is wrong.
@@ -6,24 +6,35 @@ which cell is wrong.
 
 from __future__ import annotations
 
+import array
 import csv
 import math
-import os
-import stat
-from pathlib import Path
+from collections.abc import Generator, Iterable
+from contextlib import closing
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
 from preshape.errors import MeasurementError
+from preshape.identify.source_file import SourceFile
 
-__all__ = ["MAXIMUM_FILE_SIZE", "Table", "cells", "check_increasing", "check_rate", "load_text", "parse_table"]
-
-MAXIMUM_FILE_SIZE = 200_000_000
-"""Files of this size [bytes] and above are refused before anything is read (about 80 minutes of Klipper raw data)."""
+__all__ = [
+    "LONGEST_NAME",
+    "Table",
+    "cells",
+    "check_fixed_decimals",
+    "check_increasing",
+    "check_rate",
+    "parse_table",
+    "printable",
+]
 
 SHOWN_CELL = 24
 """Characters of a wrong cell that an error message shows."""
+
+LONGEST_NAME = 200
+"""Characters; what is longer is no name of a column and no comment with a rate, and is not searched for one."""
 
 RATE_TOLERANCE = 0.01
 """Relative difference at which a given sample rate contradicts the one in the file."""
@@ -32,73 +43,41 @@ Table = NDArray[np.float64]
 """Parsed numbers, shape (row, column)."""
 
 
-def load_text(path: str | os.PathLike[str]) -> str:
-    """The text of a measurement file; raises MeasurementError where that is not possible."""
-    source = os.fspath(path)
-    try:
-        status = os.stat(source)
-    except FileNotFoundError:
-        raise MeasurementError(f"{source}: there is no such file; check the path.") from None
-    except (OSError, ValueError) as error:
-        raise MeasurementError(f"{source}: the file cannot be opened ({_reason(error)}); check the path.") from None
-    if stat.S_ISDIR(status.st_mode):
-        raise MeasurementError(f"{source}: this is a directory; give the measurement file in it.")
-    if not stat.S_ISREG(status.st_mode):
-        raise MeasurementError(f"{source}: this is not a regular file; give a measurement file.")
-    if status.st_size >= MAXIMUM_FILE_SIZE:
-        raise MeasurementError(
-            f"{source}: the file has {status.st_size / 1e6:.0f} MB and the limit is below "
-            f"{MAXIMUM_FILE_SIZE / 1e6:.0f} MB; cut the part that holds the vibration."
-        )
-    try:
-        data = Path(source).read_bytes()
-    except OSError as error:
-        raise MeasurementError(
-            f"{source}: the file cannot be read ({_reason(error)}); check its permissions."
-        ) from None
-    if not data.strip():
-        raise MeasurementError(f"{source}: the file is empty; record the measurement again.")
-    if b"\0" in data:
-        raise MeasurementError(f"{source}: the file is binary, not text; give the measurement as CSV.")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise MeasurementError(
-            f"{source}: the file is not text (byte {error.start} is not UTF-8); give the measurement as CSV."
-        ) from None
-
-
-def _reason(error: Exception) -> str:
-    """The operating system's words for what went wrong, without the path."""
-    return str(getattr(error, "strerror", None) or error).lower()
-
-
 def cells(line: str, delimiter: str | None = ",") -> list[str]:
     """The stripped cells of one line; a delimiter of None means white space. Quoted cells may hold the delimiter."""
     if delimiter is None:
         return line.split()
-    return [cell.strip() for cell in next(csv.reader([line.strip()], delimiter=delimiter), [])]
+    try:
+        return [cell.strip() for cell in next(csv.reader([line.strip()], delimiter=delimiter), [])]
+    except csv.Error:  # a cell longer than its limit, or a line end in quotes
+        return [cell.strip() for cell in line.split(delimiter)]
 
 
 def parse_table(
-    lines: list[str], first_line: int, columns: int, source: str, used: int | None = None, delimiter: str | None = ","
+    file: SourceFile,
+    first: int,
+    columns: int,
+    *,
+    used: int | None = None,
+    delimiter: str | None = ",",
+    trailer: bool = False,
 ) -> Table:
-    """Parse lines of numbers, shape (row, `used`).
+    """Parse the lines of numbers in a file, shape (row, `used`).
 
     Parameters
     ----------
-    lines : list of str
-        Lines of the file; blank ones are passed over.
-    first_line : int
-        Number of the first of them in the file, counted from 1, for messages.
+    file : SourceFile
+        The file.
+    first : int
+        Index of its first line of numbers, counted from 0; blank lines below are passed over.
     columns : int
         Number of cells that each line must have.
-    source : str
-        File name, for messages.
     used : int, optional
         Only so many columns, from the left, are parsed.
     delimiter : str or None
         None means white space.
+    trailer : bool
+        True when the last line is not one of numbers.
 
     Raises
     ------
@@ -106,50 +85,73 @@ def parse_table(
         Naming the line and the cell.
     """
     used = columns if used is None else used
-    try:
-        if used == columns:  # np.loadtxt checks the number of columns only when it reads all of them
-            table = np.loadtxt(lines, delimiter=delimiter, comments=None, ndmin=2)
-        else:
-            table = _checked_slowly(lines, first_line, columns, source, used, delimiter)
-    except ValueError as error:
-        _checked_slowly(lines, first_line, columns, source, used, delimiter)
-        raise MeasurementError(f"{source}: the table of numbers cannot be read ({error}); export it again.") from None
-    if table.shape[1:] != (used,) or not np.all(np.isfinite(table)):
-        table = _checked_slowly(lines, first_line, columns, source, used, delimiter)
+    # np.loadtxt checks the number of columns only when it reads all of them
+    table = _in_bulk(file, first, delimiter, trailer) if used == columns else None
+    if table is None or table.shape[1] != used:
+        return _checked_slowly(file, first, columns, used, delimiter, trailer)
     return table
 
 
+def _in_bulk(file: SourceFile, first: int, delimiter: str | None, trailer: bool) -> Table | None:
+    """All of the table, or None when something is wrong with it."""
+    with closing(file.lines(first)) as stream:
+        lines = _all_but_last(stream) if trailer else stream
+        begin = next((line for line in lines if line.strip()), None)
+        if begin is None:
+            return None
+        try:
+            table = np.loadtxt(chain([begin], lines), delimiter=delimiter, comments=None, ndmin=2)
+        except MeasurementError:
+            raise
+        except ValueError:
+            return None
+    # min and max are NaN or infinite when any number is, and need no array of their own
+    return table if math.isfinite(table.min()) and math.isfinite(table.max()) else None
+
+
+def _all_but_last(lines: Iterable[str]) -> Generator[str, None, None]:
+    """The lines before the last one that is not blank."""
+    held: list[str] = []
+    for line in lines:
+        if held and line.strip():
+            yield from held
+            held = []
+        if held or line.strip():
+            held.append(line)
+        else:
+            yield line
+
+
 def _checked_slowly(
-    lines: list[str], first_line: int, columns: int, source: str, used: int, delimiter: str | None
+    file: SourceFile, first: int, columns: int, used: int, delimiter: str | None, trailer: bool
 ) -> Table:
     """Parse line by line; raise on the first cell or line that is wrong."""
-    rows: list[list[float]] = []
-    for number, line in enumerate(lines, start=first_line):
-        if not line.strip():
-            continue
-        found = cells(line, delimiter)
-        if len(found) != columns:
-            remedy = (
-                "the file is truncated; copy it again" if _is_last(lines, number - first_line) else "repair that line"
-            )
-            raise MeasurementError(
-                f"{source}: line {number} has {_columns(len(found))} where the lines before have {columns}; {remedy}."
-            )
-        rows.append([_number(cell, number, source) for cell in found[:used]])
-    return np.array(rows, dtype=np.float64).reshape(-1, used)
+    numbers = array.array("d")
+    with closing(file.lines(first)) as stream:
+        lines = _all_but_last(stream) if trailer else stream
+        for number, line in enumerate(lines, start=first + 1):
+            if not line.strip():
+                continue
+            found = cells(line, delimiter)
+            if len(found) != columns:
+                is_last = not any(line.strip() for line in lines)
+                remedy = "the file is truncated; copy it again" if is_last else "repair that line"
+                raise MeasurementError(
+                    f"{file.name}: line {number} has {_columns(len(found))} where the lines before have {columns}; "
+                    f"{remedy}."
+                )
+            numbers.extend(_number(cell, number, file.name) for cell in found[:used])
+    return np.frombuffer(numbers, dtype=np.float64).reshape(-1, used)
 
 
 def _columns(count: int) -> str:
     return f"{count} column" if count == 1 else f"{count} columns"
 
 
-def _is_last(lines: list[str], index: int) -> bool:
-    return not any(line.strip() for line in lines[index + 1 :])
-
-
 def _number(cell: str, line: int, source: str) -> float:
     """The finite number in a cell, or a sentence naming line and cell."""
     shown = cell if len(cell) <= SHOWN_CELL else cell[:SHOWN_CELL] + "..."
+    shown = printable(shown)
     try:
         value = float(cell)
         if "_" in cell:  # Python's digit grouping is no number in a measurement file
@@ -165,15 +167,19 @@ def _number(cell: str, line: int, source: str) -> float:
     return value
 
 
-def check_increasing(column: NDArray[np.float64], name: str, first_line: int, source: str) -> None:
-    """Raise unless the column increases from row to row; rows are taken to stand on consecutive lines."""
+def check_increasing(column: NDArray[np.float64], name: str, first_line: int | None, source: str) -> None:
+    """Raise unless the column increases from row to row; rows are taken to stand on consecutive lines.
+
+    `first_line` is the number of the first row's line, or None where the numbers do not stand in lines.
+    """
     steps = np.diff(column)
     wrong = np.flatnonzero(steps <= 0.0)
     if wrong.size:
         row = int(wrong[0]) + 1
         what = "repeats" if steps[row - 1] == 0.0 else "goes back"
+        line = "" if first_line is None else f" (about line {first_line + row})"
         raise MeasurementError(
-            f"{source}: the {name} {what} at data row {row + 1} (about line {first_line + row}), "
+            f"{source}: the {name} {what} at data row {row + 1}{line}, "
             f"to {column[row]:.9g} after {column[row - 1]:.9g}; sort the rows and remove duplicates."
         )
 
@@ -187,14 +193,19 @@ def check_rate(given: float | None, found: float, source: str) -> None:
         )
 
 
-def check_fixed_decimals(lines: list[str], first_line: int, source: str) -> None:
+def check_fixed_decimals(file: SourceFile) -> None:
     """Raise when the last number of a fixed-format file is shorter than the one above it: the file was cut there."""
-    filled = [index for index, line in enumerate(lines) if line.strip()]
-    if len(filled) < 2:
+    if len(file.tail) < 2:
         return
-    last, before = (lines[filled[index]].rpartition(",")[2].strip() for index in (-1, -2))
+    before, last = (line.rpartition(",")[2].strip() for line in file.tail[-2:])
     if len(last.partition(".")[2]) < len(before.partition(".")[2]):
+        number = max(number for number, line in enumerate(file.lines(), start=1) if line.strip())
         raise MeasurementError(
-            f"{source}: the last line ({first_line + filled[-1]}) is cut in the middle of a number; "
-            "the file is truncated, copy it again."
+            f"{file.name}: the last line ({number}) is cut in the middle of a number; the file is truncated, "
+            "copy it again."
         )
+
+
+def printable(text: str) -> str:
+    """The text with a question mark for what a terminal would not print, so that a message stays one line."""
+    return "".join(sign if sign.isprintable() else "?" for sign in text)

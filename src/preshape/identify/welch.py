@@ -25,7 +25,7 @@ SHORTEST_WINDOW = 16
 
 def is_sweep(time_series: TimeSeries) -> bool:
     """Whether a time series is Klipper's resonance test, and not a short recording by its ACCELEROMETER_MEASURE."""
-    return time_series.format == klipper_raw.FORMAT and time_series.duration >= SHORTEST_SWEEP
+    return time_series.format.startswith(klipper_raw.FORMAT) and time_series.duration >= SHORTEST_SWEEP
 
 
 def spectrum(time_series: TimeSeries, *, window_duration: float = WINDOW) -> Spectrum:
@@ -77,19 +77,22 @@ def spectrum(time_series: TimeSeries, *, window_duration: float = WINDOW) -> Spe
     length = 1 << int(np.ceil(np.log2(wanted)))
     if length > samples:
         length = 1 << int(np.log2(samples))
-    frequencies, density = welch(
-        time_series.values,
-        fs=time_series.sample_rate,
-        window=("kaiser", KAISER_BETA),
-        nperseg=length,
-        noverlap=length // 2,
-        detrend="constant",
-        scaling="density",
-        axis=-1,
-    )
+    # One channel at a time: all windows of all channels together take several times the memory of a long record.
+    estimates = [
+        welch(
+            channel,
+            fs=time_series.sample_rate,
+            window=("kaiser", KAISER_BETA),
+            nperseg=length,
+            noverlap=length // 2,
+            detrend="constant",
+            scaling="density",
+        )
+        for channel in time_series.values
+    ]
     return Spectrum(
-        frequencies,
-        np.maximum(density, 0.0),
+        estimates[0][0],
+        np.maximum([density for _, density in estimates], 0.0),
         time_series.channels,
         unit=f"({time_series.unit})^2/Hz" if time_series.unit else "",
         window_duration=length / time_series.sample_rate,

@@ -16,12 +16,13 @@ from preshape.mode import Mode
 from preshape.report import Calibration, MeasuredFile
 from preshape.workflow.candidates import designed_candidates
 from preshape.workflow.choose import choose, ranked
+from preshape.workflow.mixed_files import mixed_up
 from preshape.workflow.simulate import simulate_move
 from preshape.workflow.spectra import scored_spectrum
 
 __all__ = ["calibrate"]
 
-PRINTERS = ("Klipper", "RepRapFirmware")
+PRINTERS = ("Klipper", "RepRapFirmware", "Prusa")
 """Formats that come from 3D printers begin with these words."""
 
 KLIPPER_RANGE = (10.0, 200.0)
@@ -35,6 +36,8 @@ def calibrate(
     tolerance: float = 0.05,
     damping: float | None = None,
     sample_rate: float | None = None,
+    part: str | None = None,
+    mixed: bool = False,
 ) -> Calibration:
     """Read measurements of one axis, find its modes, design the candidates, and choose.
 
@@ -51,6 +54,10 @@ def calibrate(
         Damping ratio [-] of the modes, when it is known better than the measurement shows it.
     sample_rate : float, optional
         Samples per second [Hz], for tables without a time column.
+    part : str, optional
+        Name of the measurement, or its beginning, in files that hold several.
+    mixed : bool
+        True when files of several axes or machines are meant to have one shaper; otherwise `trouble` says so.
 
     Returns
     -------
@@ -76,7 +83,9 @@ def calibrate(
         raise InputError(f"{maximum_impulses} impulses cannot shape anything: the shortest shaper has 2.")
     if damping is not None:
         Mode(1.0, damping)  # says what is wrong with it
-    measured = tuple(_measured(Path(path), damping, sample_rate) for path in paths)
+    measurements = [identify.read(path, sample_rate=sample_rate, part=part) for path in paths]
+    names = [Path(path).name for path in paths]
+    measured = tuple(_measured(name, one, damping) for name, one in zip(names, measurements, strict=True))
     modes = identify.merged_modes([file.identification for file in measured])
     spectra = klipper.as_spectra([(file.scored.frequencies, file.scored.power) for file in measured])
     stock = klipper.recommend(spectra).chosen if _klipper_applies(measured) else None
@@ -96,7 +105,8 @@ def calibrate(
     )
     chosen, reason = choose(candidates, tolerance, clear)
     several = len(measured) > 1
-    trouble = tuple(
+    trouble = () if mixed or not several else mixed_up(names, measurements)
+    trouble += tuple(
         f"{file.name}: {sentence}" if several else sentence
         for file in measured
         for sentence in file.identification.trouble
@@ -123,7 +133,6 @@ def _klipper_applies(files: tuple[MeasuredFile, ...]) -> bool:
     return printer or (min(loudest) >= KLIPPER_RANGE[0] and max(loudest) <= KLIPPER_RANGE[1])
 
 
-def _measured(path: Path, damping: float | None, sample_rate: float | None) -> MeasuredFile:
-    measurement = identify.read(path, sample_rate=sample_rate)
+def _measured(name: str, measurement: identify.Measurement, damping: float | None) -> MeasuredFile:
     identification = identify.find_modes(measurement, damping=damping)
-    return MeasuredFile(path.name, measurement.format, identification, scored_spectrum(measurement, identification))
+    return MeasuredFile(name, measurement.format, identification, scored_spectrum(measurement, identification))
