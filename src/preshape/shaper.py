@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from preshape.errors import InputError
 from preshape.files import write_atomically
 from preshape.provenance import Design
-from preshape.shaper_command import Exact, Function, function_shaped, samples_shaped, taps_of
+from preshape.shaper_command import Exact, Function, Labelled, command_shaped, function_shaped, taps_of
 from preshape.shaper_file import SCHEMA, boxes_from_plain, from_plain, read_json, to_json, to_plain
 from preshape.shaper_parts import (
     Box,
@@ -184,6 +184,11 @@ class Shaper:
     def shape(self, command: Exact) -> Exact: ...
 
     @overload
+    def shape(
+        self, command: Labelled, dt: float | None = ..., *, axis: int = ..., initial: ArrayLike = ...
+    ) -> Labelled: ...
+
+    @overload
     def shape(self, command: ArrayLike, dt: float, *, axis: int = ..., initial: ArrayLike = ...) -> Samples: ...
 
     def shape(self, command: Any, dt: float | None = None, *, axis: int = -1, initial: ArrayLike = 0.0) -> Any:
@@ -191,11 +196,12 @@ class Shaper:
 
         Parameters
         ----------
-        command : array_like, shape (..., time), or Profile
+        command : array_like, shape (..., time), or Profile, or of pandas or xarray
             Samples of the command, any unit, evenly spaced; the last one is held afterwards. Or a Profile: then the
-            rest is left out. A function of time is shaped by :meth:`shape_function`.
+            rest is left out. Of a Series or DataFrame the rows are times, of a DataArray its "time"; their index goes
+            on in the answer. A function of time is shaped by :meth:`shape_function`.
         dt : float
-            Sample time [s].
+            Sample time [s]; left out where a time index says it.
         axis : int
             The time axis; by default the last.
         initial : array_like
@@ -204,7 +210,7 @@ class Shaper:
 
         Returns
         -------
-        ndarray, shape (..., time + ceil(duration / dt)), or Profile
+        ndarray, shape (..., time + ceil(duration / dt)), or what the command is
             Long enough to reach the command's end value.
 
         Raises
@@ -217,13 +223,7 @@ class Shaper:
         >>> Shaper([0.0, 0.5], [0.5, 0.5]).shape([1.0, 1.0, 1.0], dt=0.25).tolist()
         [0.5, 0.5, 1.0, 1.0, 1.0]
         """
-        if hasattr(command, "shaped"):
-            if dt is not None:
-                raise InputError("this command is shaped exactly and has no samples: leave dt out.")
-            return command.shaped(self)
-        if dt is None or callable(command):
-            raise InputError("samples need their dt, a function shape_function: shape(samples, dt=...).")
-        return samples_shaped(command, self.taps(dt), axis, initial)
+        return command_shaped(self, command, dt, axis, initial)
 
     def shape_function(
         self, command: Function, antiderivative: Function | None = None

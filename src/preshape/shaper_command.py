@@ -11,9 +11,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from preshape.errors import InputError
 from preshape.kernel import sparse_convolve
+from preshape.shaper_labelled import Labelled, is_labelled, labelled_shaped
 from preshape.shaper_parts import COINCIDENT, Box
 
-__all__ = ["Exact", "Function", "Shapeable", "function_shaped", "samples_shaped", "taps_of"]
+__all__ = [
+    "Exact",
+    "Function",
+    "Labelled",
+    "Shapeable",
+    "command_shaped",
+    "function_shaped",
+    "samples_shaped",
+    "taps_of",
+]
 
 Exact = TypeVar("Exact", bound="Shapeable")
 
@@ -41,6 +51,23 @@ def taps_of(
     summed = np.bincount(where, weights)
     keep = (summed != 0.0) | (unique == 0)  # a first tap of weight 0 says that the shaper begins with a delay
     return unique[keep].astype(np.intp), summed[keep]
+
+
+def command_shaped(shaper: Any, command: Any, dt: float | None, axis: int, initial: ArrayLike) -> Any:
+    """A command of any kind through a Shaper: what :meth:`Shaper.shape` returns."""
+    if is_labelled(command):
+
+        def shape(values: Any, step: float, along: int) -> NDArray[np.float64]:
+            return samples_shaped(values, shaper.taps(step), along, initial)
+
+        return labelled_shaped(command, shape, dt, axis)
+    if hasattr(command, "shaped"):
+        if dt is not None:
+            raise InputError("this command is shaped exactly and has no samples: leave dt out.")
+        return command.shaped(shaper)
+    if dt is None or callable(command):
+        raise InputError("samples need their dt, a function shape_function: shape(samples, dt=...).")
+    return samples_shaped(command, shaper.taps(dt), axis, initial)
 
 
 def samples_shaped(

@@ -15,6 +15,7 @@ COMMANDS = {
     "design": "Design a shaper for known modes.",
     "analyze": "Show what a shaper does at its modes.",
     "shape": "Shape a command that lies in a CSV file.",
+    "gcode": "Shape the moves of a G-code program, for a controller that cannot.",
     "stream": "Shape standard input into standard output, sample by sample.",
     "export": "Write a shaper for somebody else's controller: C, LinuxCNC ...",
     "compare": "Compare every kind of command for one move of a flexible machine.",

@@ -2,6 +2,7 @@
 
 from preshape.export import klipper
 from preshape.export.configure import ExportedSettings
+from preshape.export.frequency_response import frequency_response
 from preshape.export.render import render
 from preshape.export.settings_target import Configured, SettingsTarget, Written
 from preshape.export.target import Exported, Files, Limits, Placed, Target
@@ -18,6 +19,7 @@ __all__ = [
     "SettingsTarget",
     "Target",
     "Written",
+    "frequency_response",
     "klipper",
     "render",
 ]

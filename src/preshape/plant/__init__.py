@@ -4,6 +4,7 @@ from preshape.kernel import Extremum
 from preshape.plant.beam import Beam
 from preshape.plant.beam_parts import BeamCoordinate, HingedPayload, Lump
 from preshape.plant.changing_modes import ChangingModes
+from preshape.plant.control_modes import modes_of
 from preshape.plant.deflection import (
     DeflectionSensitivity,
     Plant,
@@ -68,6 +69,7 @@ __all__ = [
     "linear_mace_beam",
     "linear_mace_torque",
     "load_plant",
+    "modes_of",
     "peak_to_peak",
     "simulated",
     "torque_pulses",

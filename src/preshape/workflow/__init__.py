@@ -4,6 +4,7 @@ from preshape.workflow.analyze import Analysis, ModeAnalysis, analyze
 from preshape.workflow.calibrate import calibrate
 from preshape.workflow.compare import compare
 from preshape.workflow.executed import SpectrumLeft, executed_shaper, left_of_spectrum
+from preshape.workflow.gcode import ShapedGcode, shape_gcode
 from preshape.workflow.identify_plant import identify_plant
 from preshape.workflow.read_command import read_command
 from preshape.workflow.save import SavedCalibration, save_calibration
@@ -21,6 +22,7 @@ __all__ = [
     "SavedCalibration",
     "SavedExport",
     "ShapedFile",
+    "ShapedGcode",
     "SpectrumLeft",
     "analyze",
     "calibrate",
@@ -35,6 +37,7 @@ __all__ = [
     "save_partial",
     "save_simulation",
     "shape_file",
+    "shape_gcode",
     "simulate_plant",
     "stream_pipe",
 ]

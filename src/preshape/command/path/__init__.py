@@ -2,5 +2,6 @@
 
 from preshape.command.path.contour import ContourError, contour_error
 from preshape.command.path.shaped_path import ShapedPath, shaped_path
+from preshape.command.path.shaped_trajectory import shaped_trajectory
 
-__all__ = ["ContourError", "ShapedPath", "contour_error", "shaped_path"]
+__all__ = ["ContourError", "ShapedPath", "contour_error", "shaped_path", "shaped_trajectory"]

@@ -14,7 +14,7 @@ from preshape.command.path.contour import ContourError, checked_path, contour_er
 from preshape.errors import InputError
 from preshape.shaper import Shaper
 
-__all__ = ["ShapedPath", "shaped_path"]
+__all__ = ["DELAYS", "ShapedPath", "one_an_axis", "shaped_path"]
 
 DELAYS = ("equal", "own")
 
@@ -112,7 +112,7 @@ def shaped_path(
     if delays not in DELAYS:
         raise InputError(f'delays is {delays!r}: it is "equal" or "own".')
     dt = positive("dt", dt, "s")
-    each = _one_an_axis(shapers, len(rows))
+    each = one_an_axis(shapers, len(rows))
     centroids = [one.centroid for one in each]
     longest = max(centroids)
     ahead = longest if advance else 0.0
@@ -133,7 +133,8 @@ def shaped_path(
     )
 
 
-def _one_an_axis(shapers: Shaper | Sequence[Shaper], axes: int) -> tuple[Shaper, ...]:
+def one_an_axis(shapers: Shaper | Sequence[Shaper], axes: int) -> tuple[Shaper, ...]:
+    """The shapers of all axes from one for all or one each; InputError if they are neither."""
     if isinstance(shapers, Shaper):
         return (shapers,) * axes
     if not isinstance(shapers, Sequence) or not all(isinstance(one, Shaper) for one in shapers):
