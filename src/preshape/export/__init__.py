@@ -2,6 +2,7 @@
 
 from preshape.export import klipper
 from preshape.export.configure import ExportedSettings
+from preshape.export.paste_ready import PasteText, paste_ready
 from preshape.export.render import render
 from preshape.export.settings_target import Configured, SettingsTarget, Written
 from preshape.export.target import Exported, Files, Limits, Placed, Target
@@ -14,10 +15,12 @@ __all__ = [
     "ExportedSettings",
     "Files",
     "Limits",
+    "PasteText",
     "Placed",
     "SettingsTarget",
     "Target",
     "Written",
     "klipper",
+    "paste_ready",
     "render",
 ]
