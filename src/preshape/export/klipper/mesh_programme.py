@@ -21,10 +21,10 @@ __all__ = ["MeshOptimum", "least_on_mesh"]
 
 Vector = NDArray[np.float64]
 
-MESH = 33
+MESH = 25
 """Times tried; an impulse between two is split on them, and joined again."""
 
-ROUNDS, CLOSE_ENOUGH = 8, 0.02
+ROUNDS, CLOSE_ENOUGH = 5, 0.03
 """Rounds of adding violated functions, and the relative gap at which they end."""
 
 SECONDS = 0.5
