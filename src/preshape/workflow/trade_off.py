@@ -141,7 +141,7 @@ class _Search:
         starts = [self.stock.shaper, *self.shapes, *self.scaled(self.stock.score.smoothing)]
         starts += [one.shaper for one in curve]
         mesh = self.mesh(smoothing) if smoothing < math.inf else None
-        return self.optimiser.best(Asked(vibration, smoothing), starts, mesh=mesh, tried=3)
+        return self.optimiser.best(Asked(vibration, smoothing), starts, mesh=mesh)
 
     def stillest(self, curve: Sequence[ScoredShaper]) -> ScoredShaper | None:
         """The least vibration at the smoothing of the stock choice, then the highest acceleration with that."""
