@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -138,7 +139,35 @@ def test_what_is_saved_is_complete_and_readable(gantry: Calibration, tmp_path: P
     for outside in ("http://", "https://", "src=", "@import"):
         assert outside not in page.replace("http://www.w3.org", "").replace("http://purl.org", "").replace(
             "http://creativecommons.org", "").replace("https://matplotlib.org", "")  # fmt: skip
-    assert sorted(os.listdir(tmp_path / "new" / "folder")) == ["calibration.svg", "report.html", "shaper.json"]
+    picks = ["improved.json", "performance.json", "quality.json"]
+    expected = ["calibration.svg", "report.html", "settings", "shaper.json", "trade_off.svg", *picks]
+    assert sorted(os.listdir(tmp_path / "new" / "folder")) == sorted(expected)
+    assert gantry.trade_off is not None
+    assert [Shaper.load(path) for path in saved.picks] == [pick.shaper for pick in gantry.trade_off.picks]
+    fitting = {text.target for text in gantry.texts if text.fits}
+    assert set(os.listdir(tmp_path / "new" / "folder" / "settings")) == fitting
+    for path in saved.settings:
+        assert path.read_text().strip()
+
+
+def test_settings_of_an_earlier_run_do_not_stay_where_the_shaper_no_longer_fits(
+    gantry: Calibration, tmp_path: Path
+) -> None:
+    text = next(text for text in gantry.texts if text.fits)
+    save_calibration(gantry, tmp_path)
+    folder = tmp_path / "settings" / text.target
+    (folder / "notes.txt").write_text("mine")
+    assert len(list(folder.iterdir())) > 1
+    gone = replace(text, text="", note="too long", files={})
+    save_calibration(replace(gantry, texts=(gone,)), tmp_path)
+    assert [path.name for path in folder.iterdir()] == ["notes.txt"]
+
+
+def test_every_calibration_of_a_printer_ends_with_settings_for_the_axis() -> None:
+    texts = {text.target: text for text in calibrate(GANTRY, axis="x").texts}
+    assert texts["rrf"].fits and texts["kalico"].fits and texts["klipper-plugin"].fits
+    assert "shaper_a_x" in texts["kalico"].text and "shaper_a_y" not in texts["kalico"].text
+    assert all(text.note for text in texts.values() if not text.fits)
 
 
 def test_a_folder_that_cannot_be_written_is_refused(gantry: Calibration, tmp_path: Path) -> None:
@@ -151,7 +180,7 @@ def test_an_interrupted_run_leaves_the_old_results(
     gantry: Calibration, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     save_calibration(gantry, tmp_path)
-    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
 
     def interrupted(descriptor: int) -> None:
         raise KeyboardInterrupt
@@ -159,7 +188,7 @@ def test_an_interrupted_run_leaves_the_old_results(
     monkeypatch.setattr(os, "fsync", interrupted)
     with pytest.raises(KeyboardInterrupt):
         save_calibration(gantry, tmp_path)
-    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
 
 
 @pytest.mark.skipif(not REAL_FILES, reason="the measurements of ../shared/data are not on this machine")

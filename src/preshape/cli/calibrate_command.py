@@ -29,12 +29,13 @@ __all__ = ["command"]
 )
 @sample_rate_option()
 @click.option("--part", metavar="NAME", help="Which measurement, or how its name begins, in files that hold several.")
+@click.option("--axis", type=click.Choice(["x", "y", "z"]), help="That the settings are for.  [default: x and y alike]")
 @click.option("--mixed", is_flag=True, help="The files are of several axes or machines on purpose.")
 @click.option(
     "--out",
     type=click.Path(file_okay=False, path_type=Path),
     metavar="DIR",
-    help="Folder for shaper.json, the figure and the report.",
+    help="Folder for the shapers, the figures, the report and the settings of each firmware.",
 )
 def command(
     files: tuple[str, ...],
@@ -43,6 +44,7 @@ def command(
     damping: float | None,
     sample_rate: float | None,
     part: str | None,
+    axis: str | None,
     mixed: bool,
     out: Path | None,
 ) -> None:
@@ -53,6 +55,7 @@ def command(
     axis are served by one shaper.
     """
     from preshape.cli.screens import calibration_screen, console
+    from preshape.cli.settings_screen import settings_screen
     from preshape.workflow import calibrate, save_calibration
 
     progress = console(stderr=True)
@@ -65,11 +68,14 @@ def command(
             sample_rate=sample_rate,
             part=part,
             mixed=mixed,
+            axis=axis,
         )
     calibration_screen(calibration)
     if out is None:
-        click.echo("Nothing was written; --out DIR writes shaper.json, the figure and the report.")
+        settings_screen(calibration, None)
+        click.echo("Nothing was written; --out DIR writes the shapers, the figures, the report and these settings.")
         return
     with progress.status("drawing the report ..."):
         saved = save_calibration(calibration, out)
+    settings_screen(calibration, saved)
     click.echo(f"Report: {saved.report}\nFigure: {saved.figure}\nShaper: {saved.shaper}")

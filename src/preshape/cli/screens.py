@@ -11,7 +11,15 @@ from rich.text import Text
 
 from preshape.band import Band
 from preshape.engine import is_proved_shortest
-from preshape.report import Calibration, TextTable, candidate_table, exclusion_sentence, klipper_sentence, mode_table
+from preshape.report import (
+    Calibration,
+    TextTable,
+    candidate_table,
+    exclusion_sentence,
+    gain_sentences,
+    klipper_sentence,
+    mode_table,
+)
 from preshape.shaper import Shaper
 from preshape.vibration import high_frequency_gain
 from preshape.workflow import Analysis, SpectrumLeft
@@ -47,6 +55,10 @@ def calibration_screen(calibration: Calibration) -> None:
     screen.print(Text(calibration.reason, style="bold"))
     if calibration.klipper is not None:
         screen.print(Text(klipper_sentence(calibration)))
+    if calibration.trade_off is not None:
+        screen.print(Text(f"\nWithin {calibration.trade_off.impulses} impulses", style="bold"))
+        for sentence in gain_sentences(calibration.trade_off)[1:]:
+            screen.print(f"  {sentence}")
 
 
 def shaper_screen(shaper: Shaper) -> None:

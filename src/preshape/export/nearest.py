@@ -33,6 +33,10 @@ EQUAL = 0.01
 COARSE, FINE, FINEST = 0.02, 0.004, 0.0005
 """Relative steps of the frequency: over the whole range, and around what was best so far."""
 
+ON_SAMPLES, MOST_DAMPINGS = 2, 2
+"""Pulses on samples change in steps, and each is made anew: over the whole range only every second frequency is tried,
+and of many damping ratios the lowest and the highest."""
+
 KEPT = 6
 """Settings whose frequency is refined."""
 
@@ -167,10 +171,13 @@ class _Search:
         count = math.ceil(math.log(high / low) / COARSE)
         frequencies = np.concatenate([each, low * np.exp(COARSE * np.arange(count + 1))])
         ratios = {round(min(max(mode.damping, self.dampings[0]), self.dampings[1]), 4) for mode in self.modes}
+        sampled = np.concatenate([each, frequencies[each.size :: ON_SAMPLES]])
+        few = ratios if len(ratios) <= MOST_DAMPINGS else {min(ratios), max(ratios)}
         for family in self.families.values():
+            tried, at = (ratios, frequencies) if family.scales else (few, sampled)
             for parameters in family.parameters():
-                for damping in sorted({min(ratio, family.maximum_damping) for ratio in ratios}):
-                    yield from self._tried(family, frequencies, damping, parameters)
+                for damping in sorted({min(ratio, family.maximum_damping) for ratio in tried}):
+                    yield from self._tried(family, at, damping, parameters)
 
     def around(self, one: _Tried, step: float, reach: int) -> Iterator[_Tried]:
         """The same setting at frequencies close by."""
@@ -194,6 +201,6 @@ class _Search:
                 continue
             at = self.at * (reference / group[:, np.newaxis, np.newaxis])
             excess = (residual_vibration(pulses, at, self.damped) - self.allowed).max(axis=(1, 2))
+            unit = pulses.duration * reference
             for frequency, more in zip(group.tolist(), excess.tolist(), strict=True):
-                duration = pulses.duration * reference / frequency
-                yield _Tried(family, frequency, damping, parameters, duration, max(more, 0.0))
+                yield _Tried(family, frequency, damping, parameters, unit / frequency, max(more, 0.0))

@@ -18,7 +18,9 @@ from preshape.report.page import calibration_page, klipper_sentence
 from preshape.report.shaped_simulation import OutputMotion, ShapedSimulation
 from preshape.report.simulation_figure import simulation_figure
 from preshape.report.stabilisation_figure import stabilisation_figure
-from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table
+from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table, pick_table
+from preshape.report.trade_off import TradeOff, TradePoint, gain_sentences
+from preshape.report.trade_off_figure import trade_off_figure
 
 __all__ = [
     "FREQUENCY_ERROR",
@@ -33,6 +35,8 @@ __all__ = [
     "ShapedSimulation",
     "SimulatedMove",
     "TextTable",
+    "TradeOff",
+    "TradePoint",
     "as_svg",
     "calibration_figure",
     "calibration_page",
@@ -44,6 +48,7 @@ __all__ = [
     "contour_figure",
     "figure_bytes",
     "figure_format",
+    "gain_sentences",
     "klipper_sentence",
     "length_unit",
     "mode_table",
@@ -52,4 +57,6 @@ __all__ = [
     "stabilisation_figure",
     "table_sentence",
     "move_figure",
+    "pick_table",
+    "trade_off_figure",
 ]

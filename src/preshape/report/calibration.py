@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from preshape.export import PasteText
 from preshape.export.klipper import KlipperFit, KlipperScore
 from preshape.identify import Identification, IdentifiedMode, PrintedSpectrum
+from preshape.report.trade_off import TradeOff
 from preshape.shaper import Shaper
 
 __all__ = ["FREQUENCY_ERROR", "Calibration", "Candidate", "MeasuredFile", "SimulatedMove"]
@@ -120,6 +122,10 @@ class Calibration:
         Remaining vibration that was allowed [-].
     maximum_impulses : int or None
         Limit of the controller.
+    trade_off : TradeOff or None
+        What smoothing buys, and the picks within the controller's limits; None where Klipper's measures mean nothing.
+    texts : tuple of PasteText
+        The chosen shaper for each firmware that takes settings, or why it does not fit; empty as above.
     """
 
     files: tuple[MeasuredFile, ...]
@@ -133,6 +139,8 @@ class Calibration:
     move: SimulatedMove | None
     tolerance: float
     maximum_impulses: int | None
+    trade_off: TradeOff | None = None
+    texts: tuple[PasteText, ...] = ()
 
     @property
     def shaper(self) -> Shaper:

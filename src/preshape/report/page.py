@@ -7,7 +7,9 @@ from html import escape
 from preshape.report.calibration import Calibration
 from preshape.report.calibration_figure import calibration_figure
 from preshape.report.figures import as_svg
-from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table, time_unit
+from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table, pick_table, time_unit
+from preshape.report.trade_off import gain_sentences
+from preshape.report.trade_off_figure import trade_off_figure
 
 __all__ = ["calibration_page", "klipper_sentence"]
 
@@ -30,13 +32,16 @@ th { font-weight: 600; color: var(--soft); vertical-align: bottom; }
 tr.chosen td { font-weight: 700; color: var(--accent); }
 tr.excluded td { color: #8a8a8a; }
 svg { width: 100%; height: auto; }
+pre { background: #f5f5f5; padding: .4rem .7rem; margin: .2rem 0 .6rem; overflow-x: auto; font-size: .85rem; }
 footer { color: var(--soft); font-size: .85rem; margin-top: 1.2rem; border-top: 1px solid var(--line);
   padding-top: .5rem; }
 @media print { body { margin: 0; max-width: none; font-size: 11px; } h2 { margin-top: .8rem; } }
 """
 
 
-def calibration_page(calibration: Calibration, version: str, figure: str | None = None) -> str:
+def calibration_page(
+    calibration: Calibration, version: str, figure: str | None = None, trade_off: str | None = None
+) -> str:
     """The report as HTML text.
 
     Parameters
@@ -47,6 +52,8 @@ def calibration_page(calibration: Calibration, version: str, figure: str | None 
         Of preshape, for the foot of the page.
     figure : str, optional
         The figure as :func:`as_svg` gives it, when it has been drawn already.
+    trade_off : str, optional
+        The same of :func:`preshape.report.trade_off_figure`.
     """
     names = ", ".join(file.name for file in calibration.files)
     drawn = as_svg(calibration_figure(calibration)) if figure is None else figure
@@ -64,10 +71,12 @@ def calibration_page(calibration: Calibration, version: str, figure: str | None 
         _candidates(calibration),
         f"<p>{escape(exclusion_sentence(calibration))}</p>" if exclusion_sentence(calibration) else "",
         f"<p>{escape(klipper_sentence(calibration))}</p>" if calibration.klipper else "",
+        _trade_off(calibration, trade_off),
         "<h2>Modes</h2>",
         _modes(calibration),
         "<h2>The shaper</h2>",
         _impulses(calibration),
+        _texts(calibration),
         f"<footer>Measured: {escape(names)}. Made by preshape {escape(version)}; the same numbers are in shaper.json "
         "beside this page. Vibration left: the root mean square amplitude that remains of "
         f"{_what_is_left(calibration)}, in the worst case of all frequencies up to 5 % off. "
@@ -117,6 +126,32 @@ def _trouble(calibration: Calibration) -> str:
         return ""
     rows = "".join(f"<p>{escape(sentence)}</p>" for sentence in calibration.trouble)
     return f'<div class="trouble"><strong>What the measurement says of the machine</strong>{rows}</div>'
+
+
+def _trade_off(calibration: Calibration, drawn: str | None) -> str:
+    """The figure of the trade-off, its picks, and what they gain."""
+    trade = calibration.trade_off
+    if trade is None:
+        return ""
+    figure = as_svg(trade_off_figure(trade)) if drawn is None else drawn
+    gains = gain_sentences(trade)
+    table = _html_table(pick_table(trade), [""] * (1 + len(trade.picks)))
+    sentences = "".join(f"<p>{escape(sentence)}</p>" for sentence in gains)
+    image = f'<div role="img" aria-label="{escape(" ".join(gains), quote=True)}">{figure}</div>'
+    return f"<h2>What smoothing buys, by Klipper's measures</h2>\n{image}\n{sentences}\n{table}"
+
+
+def _texts(calibration: Calibration) -> str:
+    """The settings to paste, and who cannot hold the shaper."""
+    if not calibration.texts:
+        return ""
+    parts = ["<h2>Settings to paste</h2>"]
+    for one in calibration.texts:
+        note = f": {one.note}" if one.note else ""
+        body = f"<pre>{escape(one.text)}</pre>" if one.fits else ""
+        what = "" if one.fits else "does not fit"
+        parts.append(f"<p><strong>{escape(one.target)}</strong> {escape(one.version)} {what}{escape(note)}</p>{body}")
+    return "\n".join(parts)
 
 
 def _candidates(calibration: Calibration) -> str:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from preshape.report.calibration import Calibration, Candidate
+from preshape.report.trade_off import TradeOff
 from preshape.shaper import Shaper
 
-__all__ = ["TextTable", "TimeUnit", "candidate_table", "exclusion_sentence", "mode_table", "time_unit"]
+__all__ = ["TextTable", "TimeUnit", "candidate_table", "exclusion_sentence", "mode_table", "pick_table", "time_unit"]
 
 CHOSEN, EXCLUDED = ">", "x"
 """Marks before a candidate's name."""
@@ -85,6 +86,33 @@ def candidate_table(calibration: Calibration) -> TextTable:
         titles += [("Klipper", "[%]"), ("smooth-", "ing [mm]"), ("max_accel", "[mm/s²]")]
     rows = tuple(_cells(calibration, candidate, unit) for candidate in calibration.candidates)
     return TextTable(tuple(titles), rows)
+
+
+def pick_table(trade: TradeOff) -> TextTable:
+    """The stock choice and the picks."""
+    unit = time_unit(trade.stock.shaper)
+    titles: tuple[tuple[str, ...], ...] = (
+        ("pick",),
+        ("impulses",),
+        ("duration", f"[{unit.name}]"),
+        ("Klipper", "[%]"),
+        ("smooth-", "ing [mm]"),
+        ("max_accel", "[mm/s²]"),
+        ("vibration left", "5 % off [%]"),
+    )
+    rows = tuple(
+        (
+            f"stock: {one.name}" if one is trade.stock else one.name,
+            f"{len(one.shaper)}",
+            f"{unit.per_second * one.shaper.duration:.{unit.decimals}f}",
+            f"{100.0 * one.score.remaining_vibration:.2f}",
+            f"{one.score.smoothing:.3f}",
+            f"{one.score.maximum_acceleration:.0f}",
+            f"{100.0 * one.left:.1f}",
+        )
+        for one in (trade.stock, *trade.picks)
+    )
+    return TextTable(titles, rows)
 
 
 def _cells(calibration: Calibration, candidate: Candidate, unit: TimeUnit) -> tuple[str, ...]:

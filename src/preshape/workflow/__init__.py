@@ -3,6 +3,7 @@
 from preshape.workflow.analyze import Analysis, ModeAnalysis, analyze
 from preshape.workflow.calibrate import calibrate
 from preshape.workflow.compare import compare
+from preshape.workflow.design_within import design_within
 from preshape.workflow.executed import SpectrumLeft, executed_shaper, left_of_spectrum
 from preshape.workflow.gcode import ShapedGcode, shape_gcode
 from preshape.workflow.identify_plant import identify_plant
@@ -27,6 +28,7 @@ __all__ = [
     "analyze",
     "calibrate",
     "compare",
+    "design_within",
     "executed_shaper",
     "identify_plant",
     "left_of_spectrum",

@@ -11,14 +11,17 @@ import numpy as np
 from preshape import identify
 from preshape.checks import tolerance_of
 from preshape.errors import InputError
-from preshape.export import klipper
-from preshape.mode import Mode
+from preshape.export import klipper, paste_ready
+from preshape.mode import Mode, Modes
 from preshape.report import Calibration, MeasuredFile
 from preshape.workflow.candidates import designed_candidates
 from preshape.workflow.choose import choose, ranked
+from preshape.workflow.design_within import room_of
 from preshape.workflow.mixed_files import mixed_up
+from preshape.workflow.remaining import lines_to_still
 from preshape.workflow.simulate import simulate_move
 from preshape.workflow.spectra import scored_spectrum
+from preshape.workflow.trade_off import found_trade_off
 
 __all__ = ["calibrate"]
 
@@ -38,6 +41,7 @@ def calibrate(
     sample_rate: float | None = None,
     part: str | None = None,
     mixed: bool = False,
+    axis: str | None = None,
 ) -> Calibration:
     """Read measurements of one axis, find its modes, design the candidates, and choose.
 
@@ -56,6 +60,8 @@ def calibrate(
         Samples per second [Hz], for tables without a time column.
     part : str, optional
         Name of the measurement, or its beginning, in files that hold several.
+    axis : str, optional
+        "x", "y" or "z": which axis the texts for firmwares set; x and y alike unless given.
     mixed : bool
         True when files of several axes or machines are meant to have one shaper; otherwise `trouble` says so.
 
@@ -88,7 +94,8 @@ def calibrate(
     measured = tuple(_measured(name, one, damping) for name, one in zip(names, measurements, strict=True))
     modes = identify.merged_modes([file.identification for file in measured])
     spectra = klipper.as_spectra([(file.scored.frequencies, file.scored.power) for file in measured])
-    stock = klipper.recommend(spectra).chosen if _klipper_applies(measured) else None
+    advice = klipper.recommend(spectra) if _klipper_applies(measured) else None
+    stock = None if advice is None else advice.chosen
     clear = all(file.identification.clear for file in measured)
     candidates = ranked(
         designed_candidates(
@@ -104,6 +111,17 @@ def calibrate(
         clear,
     )
     chosen, reason = choose(candidates, tolerance, clear)
+    trade_off = None
+    if advice is not None:
+        trade_off = found_trade_off(
+            spectra,
+            candidates,
+            advice,
+            room_of(maximum_impulses=maximum_impulses),
+            modes=Modes([mode.mode for mode in modes]) if modes else None,
+            lines=lines_to_still(spectra, modes, clear, damping),
+            remaining=tolerance,
+        )
     several = len(measured) > 1
     trouble = () if mixed or not several else mixed_up(names, measurements)
     trouble += tuple(
@@ -123,6 +141,8 @@ def calibrate(
         move=simulate_move(chosen.shaper, modes) if modes else None,
         tolerance=tolerance,
         maximum_impulses=maximum_impulses,
+        trade_off=trade_off,
+        texts=() if advice is None else paste_ready(chosen.shaper, axis),
     )
 
 

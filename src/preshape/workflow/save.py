@@ -1,17 +1,22 @@
-"""What a calibration leaves in a folder: shaper.json, the figure, the report. All of it, or a clear refusal."""
+"""What a calibration leaves in a folder: shapers, figures, report, settings to paste. All of it, or a clear refusal."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
 from preshape.errors import InputError
+from preshape.export.settings_target import MARK
 from preshape.files import write_atomically
-from preshape.report import Calibration, as_svg, calibration_figure, calibration_page
+from preshape.report import Calibration, as_svg, calibration_figure, calibration_page, trade_off_figure
 
 __all__ = ["SavedCalibration", "save_calibration"]
+
+SETTINGS = "settings"
+"""The folder below which each firmware has its own."""
 
 
 @dataclass(frozen=True)
@@ -22,11 +27,20 @@ class SavedCalibration:
     ----------
     shaper, figure, report : Path
         shaper.json, calibration.svg, report.html.
+    trade_off : Path or None
+        trade_off.svg, if there is a trade-off.
+    picks : tuple of Path
+        performance.json, quality.json, improved.json, those that exist.
+    settings : tuple of Path
+        Of every firmware that holds the chosen shaper, each in a folder of its name under settings.
     """
 
     shaper: Path
     figure: Path
     report: Path
+    trade_off: Path | None = None
+    picks: tuple[Path, ...] = ()
+    settings: tuple[Path, ...] = ()
 
 
 def save_calibration(calibration: Calibration, folder: str | os.PathLike[str]) -> SavedCalibration:
@@ -40,16 +54,39 @@ def save_calibration(calibration: Calibration, folder: str | os.PathLike[str]) -
         If the folder cannot be made or written.
     """
     target = Path(folder)
-    try:
-        target.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"cannot make the folder {target}: {error.strerror or error}; choose another with --out."
-        ) from error
+    trade = calibration.trade_off
     figure = as_svg(calibration_figure(calibration))
-    page = calibration_page(calibration, version("preshape"), figure)
+    second = None if trade is None else as_svg(trade_off_figure(trade))
+    page = calibration_page(calibration, version("preshape"), figure, second)
+    settings = {target / SETTINGS / name: content for text in calibration.texts for name, content in text.files.items()}
+    _make_folders([target, *sorted({path.parent for path in settings})])
+    _remove_outdated(target / SETTINGS / text.target for text in calibration.texts if not text.fits)
     return SavedCalibration(
         shaper=calibration.shaper.save(target / "shaper.json"),
         figure=write_atomically(target / "calibration.svg", figure),
         report=write_atomically(target / "report.html", page),
+        trade_off=None if second is None else write_atomically(target / "trade_off.svg", second),
+        picks=() if trade is None else tuple(pick.shaper.save(target / f"{pick.name}.json") for pick in trade.picks),
+        settings=tuple(write_atomically(path, content) for path, content in settings.items()),
     )
+
+
+def _make_folders(folders: Iterable[Path]) -> None:
+    for folder in folders:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError(
+                f"cannot make the folder {folder}: {error.strerror or error}; choose another with --out."
+            ) from error
+
+
+def _remove_outdated(folders: Iterable[Path]) -> None:
+    """Settings that an earlier run left for firmwares that cannot hold the shaper now: nobody should paste them."""
+    for folder in folders:
+        for path in folder.glob("*") if folder.is_dir() else ():
+            try:
+                if MARK.search(path.read_text()[:200]):
+                    path.unlink()
+            except (OSError, UnicodeDecodeError):
+                continue  # not of an export, or not ours to remove
