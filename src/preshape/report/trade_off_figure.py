@@ -116,9 +116,9 @@ def _names(axes: Axes, shown: Sequence[TradePoint], width: float) -> None:
         axes.annotate(
             ", ".join(names),
             (group[0].score.smoothing, 100.0 * group[0].score.remaining_vibration),
-            xytext=(3, 5),
+            xytext=(1, 6),
             textcoords="offset points",
-            rotation=38,
+            rotation=62,  # steep, so that neighbours do not touch
             fontsize=7.5,
             color=INK,
         )
