@@ -19,8 +19,28 @@ from preshape.report.shaped_simulation import OutputMotion, ShapedSimulation
 from preshape.report.simulation_figure import simulation_figure
 from preshape.report.stabilisation_figure import stabilisation_figure
 from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table
+from preshape.report.verification import (
+    AS_PREDICTED,
+    LESS,
+    MORE,
+    NOISE,
+    Estimate,
+    ModeVerdict,
+    Ringing,
+    Verification,
+)
+from preshape.report.verification_figure import verification_figure
+from preshape.report.verification_table import residual_table, verification_table
 
 __all__ = [
+    "AS_PREDICTED",
+    "LESS",
+    "MORE",
+    "NOISE",
+    "Estimate",
+    "ModeVerdict",
+    "Ringing",
+    "Verification",
     "FREQUENCY_ERROR",
     "Calibration",
     "Candidate",
@@ -52,4 +72,7 @@ __all__ = [
     "stabilisation_figure",
     "table_sentence",
     "move_figure",
+    "residual_table",
+    "verification_figure",
+    "verification_table",
 ]
