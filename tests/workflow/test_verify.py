@@ -14,7 +14,7 @@ from preshape import Mode
 from preshape.errors import InputError
 from preshape.export.rrf import named
 from preshape.identify import TimeSeries, read
-from preshape.report import AS_PREDICTED, LESS, NOISE
+from preshape.report import AS_PREDICTED, DOUBTFUL, LESS, NOISE
 from preshape.vibration import residual_vibration
 from preshape.workflow import verify
 from preshape.workflow.ratio_interval import ratio_interval
@@ -182,4 +182,5 @@ def test_the_real_pair_as_a_user_runs_it_doubts_the_stop_aloud() -> None:
     assert isinstance(read(files[0]), TimeSeries)
     result = verify(*files, shaper=named("zvddd", 39.65, 0.1, "3.5"))
     assert any("the stop was not found rightly" in sentence for sentence in result.trouble)
-    assert all(one.verdict in (AS_PREDICTED, NOISE) for one in result.modes)
+    assert {one.verdict for one in result.modes if not one.new} == {DOUBTFUL}
+    assert result.sentence.startswith("Not to be trusted before the stop is given.")

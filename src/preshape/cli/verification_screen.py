@@ -18,7 +18,8 @@ def verification_screen(verification: Verification) -> None:
     for sentence in verification.trouble:
         screen.print(Text(f"! {sentence}", style="bold yellow"))
     if verification.modes:
-        screen.print(_drawn("\nModes, amplitude at the stop", verification_table(verification)))
+        unit = f" [{verification.unit}]" if verification.unit else ""
+        screen.print(_drawn(f"\nModes, amplitude at the stop{unit}", verification_table(verification)))
     title = f"\nRoot mean square, {1e3 * verification.window:.3g} ms after the stop, below {verification.below:.3g} Hz"
     screen.print(_drawn(title, residual_table(verification)))
     if verification.floor is not None:

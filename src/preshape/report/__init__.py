@@ -21,6 +21,7 @@ from preshape.report.stabilisation_figure import stabilisation_figure
 from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table
 from preshape.report.verification import (
     AS_PREDICTED,
+    DOUBTFUL,
     LESS,
     MORE,
     NOISE,
@@ -34,6 +35,7 @@ from preshape.report.verification_table import residual_table, verification_tabl
 
 __all__ = [
     "AS_PREDICTED",
+    "DOUBTFUL",
     "LESS",
     "MORE",
     "NOISE",

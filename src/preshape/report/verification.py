@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from preshape.identify import IdentifiedMode
 
-__all__ = ["AS_PREDICTED", "LESS", "MORE", "NOISE", "Estimate", "ModeVerdict", "Ringing", "Verification"]
+__all__ = ["AS_PREDICTED", "DOUBTFUL", "LESS", "MORE", "NOISE", "Estimate", "ModeVerdict", "Ringing", "Verification"]
 
 AS_PREDICTED = "as predicted"
 LESS = "less than predicted"
 MORE = "more than predicted"
 NOISE = "not distinguishable from noise"
+DOUBTFUL = "stop in doubt"
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,8 @@ class ModeVerdict:
         Lowest, middle and highest residual vibration [-] of the shaper within the intervals of frequency and damping.
     verdict : str
         With a shaper "as predicted", "less than predicted" (it takes less away) or "more than predicted"; without one
-        "reduced", "increased" or "no sure change"; or "not distinguishable from noise".
+        "reduced", "increased" or "no sure change"; "not distinguishable from noise"; "stop in doubt" where the moves do
+        not last longer by the shaper's duration.
     new : bool
         True when the shaped recordings show it, and more of it than the unshaped ones.
     """
@@ -143,7 +145,9 @@ class Verification:
     def sentence(self) -> str:
         """The verdict in a sentence."""
         total = self.ratio[-1]
-        text = (
+        doubtful = any(one.verdict == DOUBTFUL for one in self.modes)
+        text = "Not to be trusted before the stop is given. " if doubtful else ""
+        text += (
             f"With the shaper {percent(total)} of the vibration after the stop is left "
             f"(root mean square over {1e3 * self.window:.3g} ms, all axes)"
         )

@@ -111,5 +111,5 @@ def _ratios(axes: Axes, verification: Verification) -> None:
     axes.axhline(100.0, color=INK, linewidth=0.9, linestyle=(0, (1, 2)))
     axes.set_xticks(range(len(shown)), [f"{one.mode.mode.frequency:.3g} Hz" for one in shown])
     axes.set_xlim(-0.5, len(shown) - 0.2)
-    axes.set_ylim(0.0, 1.25 * top)
+    axes.set_ylim(-0.05 * top, 1.25 * top)  # room for a point at 0
     axes.legend(fontsize=8.5, loc="upper right", frameon=True, framealpha=0.9, edgecolor="white", ncols=2)

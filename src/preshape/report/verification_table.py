@@ -12,9 +12,14 @@ __all__ = ["residual_table", "verification_table"]
 
 def verification_table(verification: Verification) -> TextTable:
     """A row for each mode: amplitudes at the stop, measured ratio with its interval, prediction, verdict."""
-    unit = f" [{verification.unit}]" if verification.unit else ""
-    titles = (("mode",), (f"before{unit}",), (f"after{unit}",), ("measured", "ratio [%]"), ("95 % interval",),
-              ("predicted", "ratio [%]"), ("verdict",))  # fmt: skip
+    titles = (
+        ("mode",),
+        ("before",),
+        ("after",),
+        ("measured ratio [%]", "(95 % interval)"),
+        ("predicted [%]", "(range)"),
+        ("verdict",),
+    )
     rows = []
     for one in verification.modes:
         predicted = "" if one.predicted is None else f"{_percent(one.predicted[1])} ({_range(*one.predicted[::2])})"
@@ -23,8 +28,7 @@ def verification_table(verification: Verification) -> TextTable:
                 str(one.mode.mode),
                 f"{one.before.value:.3g}",
                 f"{one.after.value:.3g}",
-                _percent(one.ratio.value),
-                _range(one.ratio.low, one.ratio.high),
+                f"{_percent(one.ratio.value)} ({_range(one.ratio.low, one.ratio.high)})",
                 predicted,
                 "new with the shaper" if one.new else one.verdict,
             )

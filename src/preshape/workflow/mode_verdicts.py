@@ -9,7 +9,7 @@ import numpy as np
 
 from preshape.identify import IdentifiedMode
 from preshape.mode import Mode
-from preshape.report import AS_PREDICTED, LESS, MORE, NOISE, Estimate, ModeVerdict
+from preshape.report import AS_PREDICTED, DOUBTFUL, LESS, MORE, NOISE, Estimate, ModeVerdict
 from preshape.shaper import Shaper
 from preshape.vibration import residual_vibration
 from preshape.workflow.ratio_interval import ratio_interval
@@ -44,6 +44,7 @@ def judged(
     fits: Sides,
     spreads: Sequence[float],
     shaper: Shaper | None,
+    doubtful: bool,
 ) -> tuple[tuple[ModeVerdict, ...], list[str]]:
     """Verdicts, and sentences on what cannot be told.
 
@@ -60,6 +61,8 @@ def judged(
         Standard deviations of the mean stop before and after [s].
     shaper : Shaper or None
         For the prediction.
+    doubtful : bool
+        Whether the stops contradict the shaper, so that nothing can be said.
     """
     slopes = _pole_spreads(modes, tails)
     verdicts, trouble = [], []
@@ -76,7 +79,7 @@ def judged(
         new = index >= known
         if new and not (low > 1.0 or (before[1] <= 0.0 < after[1] and after[1] > before[2])):
             continue
-        verdict = _verdict(measured, predicted, before[1] <= 0.0, after[1] <= 0.0)
+        verdict = DOUBTFUL if doubtful else _verdict(measured, predicted, before[1] <= 0.0, after[1] <= 0.0)
         if before[1] <= 0.0 and not new:
             trouble.append(
                 f"the noise is too high to tell what became of the mode at {one.mode.frequency:.3g} Hz: "

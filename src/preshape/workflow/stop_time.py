@@ -124,12 +124,14 @@ def _stop(series: TimeSeries, begin: float | None, known: Sequence[Mode]) -> tup
         return series.start, 0.0
     earliest = 0 if begin is None else round((begin - series.start) * rate)
     at = max(found, earliest + 1)
-    found_here = ring_down(_from(series, at)).modes or ring_down(series).modes
+    later = at + int(SURELY_FREE * (samples - at))
+    # With known modes only what is not known is wanted here, and must not come from the end of the move.
+    found_here = ring_down(_from(series, later if known else at)).modes or ring_down(series).modes
     own = [one.mode for one in found_here if not known or one.share > STRONG]
     modes = [*known, *(one for one in own if all(abs(one.frequency / other.frequency - 1.0) > NEAR for other in known))]
     if not modes:
         return series.start + found / rate, 1.0 / decay.rate
-    at += int(SURELY_FREE * (samples - at))
+    at = later
     past = _Continuation(values, rate, np.array([one.pole for one in modes]))
     while at > earliest + WIDTHS[0]:
         widths = [width for width in WIDTHS if at - width >= earliest]

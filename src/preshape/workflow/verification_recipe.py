@@ -28,6 +28,9 @@ RRF_RATE = 1344.0
 STEP = 0.001
 """Between two positions of a table [s]."""
 
+LONGEST = 100.0
+"""Of a table [s]."""
+
 LARGEST = 1e6
 LEAST = 1e-3
 
@@ -102,12 +105,15 @@ def _csv(axis: str, distance: float, speed: float, acceleration: float, shaper: 
 
     from preshape.command import trapezoid
 
-    rest = AFTER + (shaper.duration if shaper else 0.0)
+    length = _duration(distance, speed, acceleration) + (shaper.duration if shaper else 0.0) + AFTER
+    if length > LONGEST:
+        raise InputError(f"the move takes {length:.0f} s: a table holds {LONGEST:g} s at most, so move less or faster.")
     move = trapezoid(
-        distance, maximum_speed=speed, maximum_acceleration=acceleration, dt=STEP, rest=rest, quantity="position [mm]"
+        distance, maximum_speed=speed, maximum_acceleration=acceleration, dt=STEP, rest=length, quantity="position [mm]"
     )
     position = np.concatenate([np.zeros(round(QUIET / STEP)), move.values])
-    columns = [position] if shaper is None else [position, shaper.shape(position, STEP)]
+    position = position[: round((QUIET + length) / STEP) + 1]
+    columns = [position] if shaper is None else [position, shaper.shape(position, STEP)[: position.size]]
     rows = [",".join(["time [s]", "unshaped [mm]", "shaped [mm]"][: 1 + len(columns)])]
     rows += [f"{k * STEP:.3f}," + ",".join(f"{v:.9g}" for v in row) for k, row in enumerate(zip(*columns, strict=True))]
     return "\n".join([*rows, ""])

@@ -126,7 +126,7 @@ def verify(
     fits = [[fit_ringing(tail, [one.mode for one in modes]) for tail in side] for side in tails]
     doubt = 0.0 if any(one is not None for one in stops) else stop_doubt(motions[0], motions[1], shaper)
     spreads = [math.hypot(doubt, *(motion.spread for motion in side)) / len(side) for side in motions]
-    verdicts, more = judged(modes, len(found.modes), tails, fits, spreads, shaper)
+    verdicts, more = judged(modes, len(found.modes), tails, fits, spreads, shaper, doubt > 0.0)
     trouble += more
     window = length if window is None else min(positive("window", window, "s"), length)
     if below is not None:
