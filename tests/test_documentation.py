@@ -14,6 +14,7 @@ from types import ModuleType
 
 import pytest
 from click.testing import CliRunner
+from tests.workflow.recordings import klipper_text, recording
 
 import preshape
 from preshape.cli.main import preshape as command_line
@@ -55,6 +56,8 @@ def test_console_lines_are_accepted(line: str, tmp_path: Path, monkeypatch: pyte
         (tmp_path / name).write_bytes((ROOT / "examples" / "data" / file).read_bytes())
     for name, frequency in (("shaper.json", 8.7), ("x.json", 38.0), ("y.json", 61.0)):
         preshape.design.zvd((frequency, 0.024)).save(tmp_path / name)
+    for name, shaper in (("before.csv", None), ("after.csv", preshape.design.zvd((46.0, 0.06)))):
+        (tmp_path / name).write_text(klipper_text(recording(shaper)[0]))
     result = CliRunner().invoke(command_line, shlex.split(line)[1:], catch_exceptions=False)
     assert result.exit_code == 0, result.output
 

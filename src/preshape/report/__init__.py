@@ -21,8 +21,30 @@ from preshape.report.stabilisation_figure import stabilisation_figure
 from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table, pick_table
 from preshape.report.trade_off import TradeOff, TradePoint, gain_sentences
 from preshape.report.trade_off_figure import trade_off_figure
+from preshape.report.verification import (
+    AS_PREDICTED,
+    DOUBTFUL,
+    LESS,
+    MORE,
+    NOISE,
+    Estimate,
+    ModeVerdict,
+    Ringing,
+    Verification,
+)
+from preshape.report.verification_figure import verification_figure
+from preshape.report.verification_table import residual_table, verification_table
 
 __all__ = [
+    "AS_PREDICTED",
+    "DOUBTFUL",
+    "LESS",
+    "MORE",
+    "NOISE",
+    "Estimate",
+    "ModeVerdict",
+    "Ringing",
+    "Verification",
     "FREQUENCY_ERROR",
     "Calibration",
     "Candidate",
@@ -59,4 +81,7 @@ __all__ = [
     "move_figure",
     "pick_table",
     "trade_off_figure",
+    "residual_table",
+    "verification_figure",
+    "verification_table",
 ]

@@ -15,6 +15,8 @@ from preshape.workflow.save_simulation import save_partial, save_simulation
 from preshape.workflow.shape_file import ShapedFile, shape_file
 from preshape.workflow.simulate_plant import simulate_plant
 from preshape.workflow.stream_pipe import PipedStream, stream_pipe
+from preshape.workflow.verification_recipe import recipe
+from preshape.workflow.verify import verify
 
 __all__ = [
     "Analysis",
@@ -33,6 +35,7 @@ __all__ = [
     "identify_plant",
     "left_of_spectrum",
     "read_command",
+    "recipe",
     "save_calibration",
     "save_export",
     "save_force",
@@ -42,4 +45,5 @@ __all__ = [
     "shape_gcode",
     "simulate_plant",
     "stream_pipe",
+    "verify",
 ]
