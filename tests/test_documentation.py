@@ -51,7 +51,18 @@ def test_console_lines_are_accepted(line: str, tmp_path: Path, monkeypatch: pyte
     monkeypatch.chdir(tmp_path)
     for name, file in (
         ("resonances_x.csv", "gantry_x.csv"),
-        *((one, one) for one in ("machine.toml", "move.csv", "part.csv", "part.gcode", "printer.cfg", "config.g")),
+        *(
+            (one, one)
+            for one in (
+                "machine.toml",
+                "move.csv",
+                "part.csv",
+                "part.gcode",
+                "printer.cfg",
+                "config.g",
+                "ring_down.csv",
+            )
+        ),
     ):
         (tmp_path / name).write_bytes((ROOT / "examples" / "data" / file).read_bytes())
     for name, frequency in (("shaper.json", 8.7), ("x.json", 38.0), ("y.json", 61.0)):
