@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from timing import once
@@ -42,11 +43,11 @@ def follow(what: str, modes_at: ModesAt, order: int) -> None:
     cold: list[float] = []
     for k in range(1, CALLS + 1):
         modes = modes_at(k)
-        found, seconds = once(lambda modes=modes: stream.track(modes))  # type: ignore[misc]
+        found, seconds = once(partial(stream.track, modes))
         assert found.changed and found.shaper.design.status == "optimal"
         (warm if found.start == "near" else searched).append(seconds)
         if k % (CALLS // COLD) == 0:
-            again, longer = once(lambda modes=modes: design.direct(modes, order))  # type: ignore[misc]
+            again, longer = once(partial(design.direct, modes, order))
             assert abs(found.shaper.duration / again.duration - 1.0) < 1e-9
             cold.append(longer)
     median, slow, longer = (1e3 * float(value) for value in (np.median(warm), np.quantile(warm, 0.99), np.median(cold)))

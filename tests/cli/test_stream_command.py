@@ -9,6 +9,7 @@ import pty
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -29,9 +30,9 @@ def shaper(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     return str(SHAPER.save(tmp_path / "shaper.json"))
 
 
-def piped(data: bytes, **options: object) -> bytes:
+def piped(data: bytes, **options: Any) -> bytes:
     sink = io.BytesIO()
-    stream_pipe(SHAPER, io.BytesIO(data), sink, rate=1000.0, **options)  # type: ignore[arg-type]
+    stream_pipe(SHAPER, io.BytesIO(data), sink, rate=1000.0, **options)
     return sink.getvalue()
 
 

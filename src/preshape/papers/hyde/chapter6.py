@@ -141,19 +141,19 @@ def _mace(done: Follow) -> list[Row]:
             "6.2",
             f"MACE, 120 deg commanded within {chapter6_mace.SLEW:g} s: left by direct shapers for outboard, vertical, "
             "inboard; by the band of all, 2 %",
-            f"{_listed(fixed)}; {left[band]:.2f} um",
+            f"{_listed(fixed)}; {left[band]:.2f} µm",
             left[band] < min(fixed),
-            note=f"Unshaped {left['unshaped']:.1f} um.",
+            note=f"Unshaped {left['unshaped']:.1f} µm.",
         ),
         beyond(
             "6.2",
             "the same, tracked by the payload's angle: order 1; order 2",
-            f"{left['tracked']:.2f}; {left['tracked, order 2']:.2f} um",
+            f"{left['tracked']:.2f}; {left['tracked, order 2']:.2f} µm",
             left["tracked"] < 0.6 * min(fixed) and left["tracked, order 2"] < min(left[band], left["tracked"]),
-            note=f"The band that stays does as well as order 1 ({left[band]:.2f} um, {done.durations[band]:.3f} s "
+            note=f"The band that stays does as well as order 1 ({left[band]:.2f} µm, {done.durations[band]:.3f} s "
             f"against {done.durations['tracked']:.3f} s): with a spread of this size tracking pays with order 2, "
             f"{done.durations['tracked, order 2']:.3f} s; fixed, that leaves "
-            f"{left['fixed, vertical, order 2']:.2f} um. Hyde's step of 120 deg is one increment: tracking cannot "
+            f"{left['fixed, vertical, order 2']:.2f} µm. Hyde's step of 120 deg is one increment: tracking cannot "
             "change its shaper.",
         ),
     ]
