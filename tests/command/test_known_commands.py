@@ -77,6 +77,18 @@ def test_the_fastest_keeps_the_limits_and_nothing_faster_does(shaper: Shaper, di
         assert sampled_use(command, shaper, found.time_scale * (1.0 - faster)) > 1.0 - 1e-6
 
 
+@pytest.mark.parametrize(("name", "distance"), [("direct", 0.00632), ("zvd", 0.01001), ("zv", 0.0999)])
+def test_a_range_of_faster_scales_behind_one_that_exceeds_the_limits_is_found(name: str, distance: float) -> None:
+    """Where copies of a pulse stop overlapping the peaks fall: slower scales exceed the limits, faster ones do not."""
+    command, shaper = move(distance), SHAPERS[name]
+    found = fastest_within(command, shaper, **LIMITS).time_scale
+    uses = [sampled_use(command, shaper, found * scale) for scale in np.arange(0.5, 1.4, 0.005)]
+    keeps = np.array(uses) <= 1.0 + 1e-9
+    first = int(np.argmax(keeps))
+    assert np.arange(0.5, 1.4, 0.005)[first] == pytest.approx(1.0, abs=0.006)
+    assert not keeps[first:].all()  # a bisection from the slow side would stop there
+
+
 @pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.name)
 def test_a_trapezoid_ends_on_its_limit_and_at_rest_for_every_family(family: Family) -> None:
     shaper = family.build(Modes([MODE]))

@@ -173,6 +173,12 @@ def test_within_the_tolerance_the_shaper_stays_and_slow_drift_still_counts() -> 
     assert starts == ["kept"] * 5 + ["near"] + ["kept"] * 5
 
 
+@pytest.mark.parametrize("by", [1e-9, 1e-6, 1e-4])
+def test_without_a_tolerance_the_smallest_change_is_followed(by: float) -> None:
+    found = Stream(FIRST, DT).track(moved(by))
+    assert found.start == "near" and found.shaper.design.modes == moved(by)
+
+
 def test_a_damping_ratio_counts_like_a_frequency() -> None:
     found = Stream(FIRST, DT).track([(1.0, 0.03), (2.7, 0.05), (4.1, 0.0)], tolerance=0.02)
     assert found.start == "kept" and found.mismatch == pytest.approx(0.01, rel=1e-3)
