@@ -105,10 +105,24 @@ def test_what_rings_above_the_structural_modes_is_no_motor_line():
     assert clean is values
 
 
-def test_structural_modes_are_never_touched():
+@pytest.mark.parametrize("noise", [0.0, 0.005])
+@pytest.mark.parametrize("below", [0.5, 0.9, 0.94, 0.96, 0.98, 0.995])
+def test_what_is_below_the_lowest_line_is_never_touched(below, noise):
+    """However long it lasts, up to the limit: the side of its peak above it is no line."""
     times = np.arange(2000) / 1391.0
-    values = np.sin(2 * np.pi * 0.9 * LOWEST_LINE * times)[None, :]
-    assert without_motor_lines(values, 1391.0)[1] == ()
+    hum = np.sin(2 * np.pi * below * LOWEST_LINE * times) + noise * np.random.default_rng(8).normal(size=2000)
+    clean, remarks = without_motor_lines(hum[None, :], 1391.0)
+    assert remarks == () and clean.tobytes() == hum.tobytes()
+
+
+@pytest.mark.parametrize("line", [145.0, 150.0, 163.0, 400.0])
+def test_one_line_is_one_line(line):
+    """What is left where it was taken out is none of its own, however loud it was."""
+    times = np.arange(2000) / 1391.0
+    clean, remarks = without_motor_lines(np.sin(2 * np.pi * line * times)[None, :], 1391.0)
+    (named,) = re.match(r"motor line at ([\d, ]+) Hz taken out", remarks[0])[1].split(",")
+    assert abs(float(named) - line) <= 1.0
+    assert np.var(clean) < 0.02 * 0.5  # the first and the last half window are not taken out altogether
 
 
 def test_noise_has_no_motor_lines():
