@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape.identify import TimeSeries, ring_down
+from preshape.identify import TimeSeries
+from preshape.identify.decaying_sinusoids import DecayFit
 from preshape.identify.free_decay import find_free_decay
-from preshape.mode import Mode
+from preshape.workflow.change_point import change_point
+from preshape.workflow.free_continuation import continued, decay_components, left_at_start
 
 __all__ = ["Motion", "find_motion"]
 
 MOST_MODES = 4
-"""Modes of the vibration that is continued backwards."""
+"""Modes that are looked for to find the free part."""
 
-SURELY_FREE = 0.2
-"""Part of the free decay that is skipped, as its beginning may be early."""
+SURELY_FREE = 0.05
+FEWEST_FREE = 8
+"""Part of the free decay that is skipped, and samples at least, as its beginning may be early."""
 
 LOUD = 5.0
 """A sample is no noise when it is off by so many standard deviations."""
@@ -27,23 +29,14 @@ QUIETEST = 24
 SURELY_QUIET = 0.7
 """Samples that must be quiet before the move for the floor to be known, and the part of the time before it that is."""
 
-WIDTHS = (4, 8, 16, 32)
-"""Samples over which it is asked whether they continue the free vibration backwards."""
+EARLIER = (0.02, 0.005)
+"""Components that have died away where the vibration is surely free are looked for so much earlier [s]."""
 
-NEAR = 0.1
-"""A mode of this recording that is as near to a known one is that one, less well known."""
+EXTENSIONS = 6
+"""So often."""
 
-STRONG = 0.1
-"""Share of the vibration from which on a mode that is not known is believed."""
-
-MODEL_ERROR = 0.02
-"""Part of the vibration by which its continuation may be off."""
-
-LEAST_SPREAD = 1.0
-"""Standard deviation of the stop, in samples, at least."""
-
-UNLIKELY = 5.5
-"""Their mean is off by so many standard deviations of the noise where the vibration is not free."""
+STILL_FREE = 1.6
+"""What is left there, in mean squares of the rest, at most."""
 
 _Array = NDArray[np.float64]
 
@@ -73,8 +66,8 @@ class Motion:
     top: float | None
 
 
-def find_motion(series: TimeSeries, stop: float | None, known: Sequence[Mode] = ()) -> Motion:
-    """Beginning, stop and floor of a recording; `stop` [s] when it is known, and the modes that are known.
+def find_motion(series: TimeSeries, stop: float | None) -> Motion:
+    """Beginning, stop and floor of a recording; `stop` [s] when it is known.
 
     The stop is the earliest time from which on the record is free vibration: a free part is found near the end, and
     continued backwards as long as what was measured before agrees with it.
@@ -82,7 +75,7 @@ def find_motion(series: TimeSeries, stop: float | None, known: Sequence[Mode] = 
     begin, floor = _beginning(series)
     spread = 0.0
     if stop is None:
-        stop, spread = _stop(series, begin, known)
+        stop, spread = _stop(series, begin)
     top = None
     if begin is not None and floor is not None:
         first = round((begin - series.start) * series.sample_rate)
@@ -113,7 +106,7 @@ def _beginning(series: TimeSeries) -> tuple[float | None, _Array | None]:
     return series.start + onset / series.sample_rate, np.asarray(quiet.std(axis=-1, ddof=1))
 
 
-def _stop(series: TimeSeries, begin: float | None, known: Sequence[Mode]) -> tuple[float, float]:
+def _stop(series: TimeSeries, begin: float | None) -> tuple[float, float]:
     """The stop [s] and its standard deviation."""
     rate, values, samples = series.sample_rate, series.values, series.values.shape[-1]
     decay = find_free_decay(series, MOST_MODES)
@@ -123,89 +116,35 @@ def _stop(series: TimeSeries, begin: float | None, known: Sequence[Mode]) -> tup
     if begin is None and found <= max(2.0 * rate / decay.rate, 3.0):
         return series.start, 0.0
     earliest = 0 if begin is None else round((begin - series.start) * rate)
-    at = max(found, earliest + 1)
-    later = at + int(SURELY_FREE * (samples - at))
-    # With known modes only what is not known is wanted here, and must not come from the end of the move.
-    found_here = ring_down(_from(series, later if known else at)).modes or ring_down(series).modes
-    own = [one.mode for one in found_here if not known or one.share > STRONG]
-    modes = [*known, *(one for one in own if all(abs(one.frequency / other.frequency - 1.0) > NEAR for other in known))]
-    if not modes:
-        return series.start + found / rate, 1.0 / decay.rate
-    at = later
-    past = _Continuation(values, rate, np.array([one.pole for one in modes]))
-    while at > earliest + WIDTHS[0]:
-        widths = [width for width in WIDTHS if at - width >= earliest]
-        off, odds = past.at(at, widths[-1])
-        broken = [width for width, odd in zip(WIDTHS, odds, strict=False) if odd > UNLIKELY]
-        if broken:
-            free, spread = _free_samples(off[:, -broken[0] :])
-            return series.start + (at - free) / rate, max(spread, LEAST_SPREAD) / rate
-        at -= 2
-    return (series.start, 0.0) if begin is None else (series.start + at / rate, WIDTHS[0] / rate)
+    free = max(found, earliest + 1)
+    free += max(int(SURELY_FREE * (samples - free)), FEWEST_FREE)
+    fit = _components(values, rate, free)
+    if fit is None:
+        return decay.start, 1.0 / decay.rate
+    middle, spread = _break(values, rate, fit, free, earliest)
+    for _ in range(EXTENSIONS):
+        for earlier in EARLIER:
+            head = max(round(earlier * rate), FEWEST_FREE)
+            start = int(middle) - head
+            more = _components(values, rate, start) if start > earliest else None
+            if more is not None and left_at_start(values, rate, more, start, head) < STILL_FREE:
+                middle, spread = _break(values, rate, more, start, earliest)
+                break
+        else:
+            break
+    return series.start + middle / rate, spread / rate
 
 
-def _from(series: TimeSeries, first: int) -> TimeSeries:
-    return replace(series, start=series.start + first / series.sample_rate, values=series.values[:, first:], remarks=())
+def _break(values: _Array, rate: float, fit: DecayFit, free: int, earliest: int) -> tuple[float, float]:
+    broken = continued(values, rate, fit, free, earliest)
+    if broken is None:
+        return float(earliest), FEWEST_FREE
+    moving = values[:, earliest:free]
+    middle, spread = change_point(broken.off, broken.covariances, moving.std(axis=-1) + np.finfo(float).tiny)
+    return broken.first + middle, spread
 
 
-class _Continuation:
-    """Free vibration fitted to the end of a record, and continued backwards; cheap at every sample.
-
-    The sums of the normal equations run from the end of the record, so that every start is one small system.
-    """
-
-    def __init__(self, values: _Array, rate: float, poles: NDArray[np.complex128]) -> None:
-        samples = values.shape[-1]
-        waves = np.exp(np.multiply.outer(np.arange(samples) / rate, poles))
-        self._basis = np.concatenate([waves.real, waves.imag, np.ones((samples, 1))], axis=1)
-        self._values = values - values[:, -samples // 4 :].mean(axis=-1, keepdims=True)
-        self._normal = _from_end(self._basis[:, :, None] * self._basis[:, None, :])
-        self._right = _from_end(self._basis[:, :, None] * self._values.T[:, None, :])
-        self._squares = _from_end(self._values.T**2)
-
-    def at(self, first: int, width: int) -> tuple[_Array, list[float]]:
-        """How far the `width` samples before `first` are off, over the noise, and how unlikely that is.
-
-        The odds are those of the mean of the last w of them, in standard deviations, for each of `WIDTHS`: a command
-        that has not stopped is first of all an offset.
-        """
-        scale = 1.0 / np.sqrt(np.diagonal(self._normal[first]))
-        inverse = scale[:, None] * np.linalg.pinv(scale[:, None] * self._normal[first] * scale) * scale
-        found = inverse @ self._right[first]
-        rest = self._squares[first] - np.sum(found * self._right[first], axis=0)
-        freedoms = max(self._values.shape[-1] - first - found.shape[0], 1)
-        noise = np.sqrt(np.maximum(rest, 0.0) / freedoms) + np.finfo(float).tiny
-        rows = self._basis[first - width : first]
-        ahead = (rows @ found).T
-        # The poles are not exact: continued backwards, the vibration may be off by a small part of itself.
-        noise = np.hypot(noise, MODEL_ERROR * np.abs(ahead).max(axis=-1))
-        off = (self._values[:, first - width : first] - ahead) / noise[:, None]
-        odds = []
-        for last in (one for one in WIDTHS if one <= width):
-            summed = rows[-last:].sum(axis=0)
-            deviation = np.sqrt(last + float(summed @ inverse @ summed))
-            odds.append(float(np.abs(off[:, -last:].sum(axis=-1)).max() / deviation))
-        return off, odds
-
-
-def _from_end(rows: _Array) -> _Array:
-    """Sums from each row to the last."""
-    return np.asarray(np.cumsum(rows[::-1], axis=0)[::-1])
-
-
-def _free_samples(off: _Array) -> tuple[float, float]:
-    """How many of the last samples are still free, and the standard deviation of that.
-
-    Before the stop they are off by an offset and a slope, after it by noise alone; all places weighted by likelihood.
-    """
-    width = off.shape[-1]
-    costs = []
-    for count in range(2, width + 1):
-        line = np.stack([np.ones(count), np.arange(count)], axis=1)
-        before = off[:, :count]
-        rest = before - (line @ (np.linalg.pinv(line) @ before.T)).T
-        costs.append(float(np.sum(rest**2) + np.sum(off[:, count:] ** 2)))
-    weights = np.exp(-0.5 * (np.array(costs) - min(costs)))
-    free = width - np.arange(2, width + 1)
-    mean = float(weights @ free / weights.sum())
-    return mean, float(np.sqrt(weights @ (free - mean) ** 2 / weights.sum()))
+def _components(values: _Array, rate: float, first: int) -> DecayFit | None:
+    """Of the samples from `first` on."""
+    tail = values[:, first:]
+    return decay_components(tail, rate) if tail.shape[-1] >= FEWEST_FREE else None

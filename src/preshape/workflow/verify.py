@@ -110,8 +110,7 @@ def verify(
     motions = [[find_motion(one, stops[0]) for _, one in sides[0]]]
     tails = [_tails(sides[0], motions[0])]
     found = _modes(tails[0], sides[0][0][1])
-    known = [one.mode for one in found.modes]
-    motions.append([find_motion(one, stops[1], known) for _, one in sides[1]])
+    motions.append([find_motion(one, stops[1]) for _, one in sides[1]])
     tails.append(_tails(sides[1], motions[1]))
     trouble = [
         *comparison_trouble([name for name, _ in sides[0]], [name for name, _ in sides[1]], everything),
