@@ -71,8 +71,12 @@ def draw(seed: int, number: int, noise: float, *, obeys: bool = True) -> Pair:
     frequencies = [float(np.exp(rng.uniform(np.log(15.0), np.log(90.0))))]
     for _ in range(int(rng.integers(0, 3))):
         frequencies.append(frequencies[-1] * float(rng.uniform(1.3, 2.3)))
-    modes = tuple(Mode(one, float(np.exp(rng.uniform(np.log(0.01), np.log(0.12))))) for one in frequencies if one < HIGHEST)
-    gains = np.array([[rng.uniform(0.3, 1.0) * 0.6**k, rng.uniform(0.0, 0.3), rng.uniform(0.0, 0.1)] for k in range(len(modes))])
+    modes = tuple(
+        Mode(one, float(np.exp(rng.uniform(np.log(0.01), np.log(0.12))))) for one in frequencies if one < HIGHEST
+    )
+    gains = np.array(
+        [[rng.uniform(0.3, 1.0) * 0.6**k, rng.uniform(0.0, 0.3), rng.uniform(0.0, 0.1)] for k in range(len(modes))]
+    )
     ramp = float(rng.uniform(0.02, 0.12))
     lasting = 2.0 * ramp + float(rng.uniform(0.02, 0.4))
     soft = float(rng.uniform(0.1, 0.3)) * ramp if rng.random() < 1.0 / 3.0 else 0.0

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape.identify.decaying_sinusoids import DecayFit, Subspace, fit_decay
+from preshape.identify.decaying_sinusoids import DecayFit, Subspace, fit_decay, left_over
 
 __all__ = ["Break", "continued", "decay_components", "left_at_start"]
 
@@ -44,32 +44,34 @@ class Break:
         First sample of the arrays.
     off : ndarray, shape (channel, sample)
         How far the samples are off the vibration that the later ones show.
-    covariances : ndarray, shape (channel, sample, sample)
-        Of `off`, were it still free.
+    noise : ndarray, shape (channel, sample)
+        Standard deviation of `off`, were it still free.
     """
 
     first: int
     off: _Array
-    covariances: _Array
+    noise: _Array
 
 
 def decay_components(values: _Array, rate: float) -> DecayFit | None:
     """Decaying sinusoids that explain a free decay, their number by the information criterion; None when none do."""
     values = values - values.mean(axis=-1, keepdims=True)
     subspace = Subspace(values, rate)
-    best: DecayFit | None = None
-    tried: set[int] = set()
+    best, least = None, np.inf
     for count in range(1, COMPONENTS + 1):
         natural, damping = subspace.poles(2 * count + 1)
         kept = damping < STRONGEST_DAMPING
         natural, damping = natural[kept], damping[kept]
-        if not natural.size or natural.size in tried or 4 * natural.size + 2 >= values.shape[-1]:
+        if not natural.size or 4 * natural.size + 2 >= values.shape[-1]:
             continue
-        tried.add(natural.size)
-        fit = fit_decay(values, rate, natural, damping)
-        if best is None or fit.criterion < best.criterion:
-            best = fit
-    return best
+        squares, freedoms = left_over(values, rate, natural, damping)
+        if freedoms <= 0:
+            continue
+        unknowns = 2 * natural.size * (values.shape[0] + 1)
+        criterion = values.size * np.log(max(squares, np.finfo(float).tiny)) + unknowns * np.log(values.size)
+        if criterion < least:
+            best, least = (natural, damping), criterion
+    return None if best is None else fit_decay(values, rate, *best)
 
 
 class _Model:
@@ -178,6 +180,5 @@ def _break(model: _Model, history: list[tuple[int, _Array, _Array]], at: int, la
     first = max(at - MARGIN // 3, 0)
     rows = model.jacobian[first:later]
     off = (model.left[first:later] - rows @ unknowns).T
-    covariances = np.einsum("sci,ij,tcj->cst", rows, covariance, rows, optimize=True)
-    covariances += model.variance[:, None, None] * np.eye(later - first)
-    return Break(first, off, covariances)
+    variance = np.einsum("sci,ij,scj->cs", rows, covariance, rows, optimize=True) + model.variance[:, None]
+    return Break(first, off, np.sqrt(variance))

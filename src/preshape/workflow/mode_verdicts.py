@@ -12,6 +12,7 @@ from preshape.mode import Mode
 from preshape.report import AS_PREDICTED, DOUBTFUL, LESS, MORE, NOISE, Estimate, ModeVerdict
 from preshape.shaper import Shaper
 from preshape.vibration import residual_vibration
+from preshape.workflow.move_stops import Stops
 from preshape.workflow.ratio_interval import ratio_interval
 from preshape.workflow.ring_amplitudes import NORMAL_95, RingFit, Tail, amplitude_interval, fit_ringing
 
@@ -42,9 +43,8 @@ def judged(
     known: int,
     tails: Sequence[Sequence[Tail]],
     fits: Sides,
-    spreads: Sequence[float],
+    stops: Stops,
     shaper: Shaper | None,
-    doubtful: bool,
 ) -> tuple[tuple[ModeVerdict, ...], list[str]]:
     """Verdicts, and sentences on what cannot be told.
 
@@ -57,19 +57,18 @@ def judged(
         How many are not new.
     tails, fits : sequence of two sequences
         Of the recordings before and after.
-    spreads : sequence of two float
-        Standard deviations of the mean stop before and after [s].
+    stops : Stops
+        How surely they are known.
     shaper : Shaper or None
         For the prediction.
-    doubtful : bool
-        Whether the stops contradict the shaper, so that nothing can be said.
     """
     slopes = _pole_spreads(modes, tails)
     verdicts, trouble = [], []
     for index, one in enumerate(modes):
         before, after = (amplitude_interval(side, index) for side in fits)
         ratio, low, high = ratio_interval(after, before)
-        by_stop = ratio * one.mode.damping * one.mode.omega * math.hypot(*spreads)
+        decay = one.mode.damping * one.mode.omega
+        by_stop = ratio * decay * stops.between
         more = NORMAL_95 * math.hypot(slopes[index], by_stop if math.isfinite(by_stop) else 0.0)
         if math.isfinite(ratio):
             low = max(ratio - math.hypot(ratio - low, more), 0.0)
@@ -79,14 +78,25 @@ def judged(
         new = index >= known
         if new and not (low > 1.0 or (before[1] <= 0.0 < after[1] and after[1] > before[2])):
             continue
-        verdict = DOUBTFUL if doubtful else _verdict(measured, predicted, before[1] <= 0.0, after[1] <= 0.0)
+        verdict = DOUBTFUL if stops.doubtful else _verdict(measured, predicted, before[1] <= 0.0, after[1] <= 0.0)
         if before[1] <= 0.0 and not new:
             trouble.append(
                 f"the noise is too high to tell what became of the mode at {one.mode.frequency:.3g} Hz: "
                 "record louder moves, or several repeats."
             )
-        verdicts.append(ModeVerdict(one, Estimate(*before), Estimate(*after), measured, predicted, verdict, new))
+        shown = [
+            _widened(amplitude, decay * max(motion.spread for motion in side))
+            for amplitude, side in ((before, stops.before), (after, stops.after))
+        ]
+        verdicts.append(ModeVerdict(one, shown[0], shown[1], measured, predicted, verdict, new))
     return tuple(verdicts), trouble
+
+
+def _widened(amplitude: tuple[float, float, float], relative: float) -> Estimate:
+    """An amplitude at the stop, whose interval counts that the stop is not known; `relative` is that deviation."""
+    value, low, high = amplitude
+    more = NORMAL_95 * relative * value
+    return Estimate(value, max(value - math.hypot(value - low, more), 0.0), value + math.hypot(high - value, more))
 
 
 def _verdict(

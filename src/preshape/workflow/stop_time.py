@@ -13,7 +13,7 @@ from preshape.identify.free_decay import find_free_decay
 from preshape.workflow.change_point import change_point
 from preshape.workflow.free_continuation import continued, decay_components, left_at_start
 
-__all__ = ["Motion", "find_motion"]
+__all__ = ["Motion", "find_motion", "find_stop"]
 
 MOST_MODES = 4
 """Modes that are looked for to find the free part."""
@@ -27,7 +27,9 @@ LOUD = 5.0
 
 QUIETEST = 24
 SURELY_QUIET = 0.7
-"""Samples that must be quiet before the move for the floor to be known, and the part of the time before it that is."""
+MOVING = 0.95
+"""Samples that must be quiet before the move for the floor to be known, the part of the time before it that is,
+and the part of all samples that may be quiet."""
 
 EARLIER = (0.02, 0.005)
 """Components that have died away where the vibration is surely free are looked for so much earlier [s]."""
@@ -49,65 +51,77 @@ class Motion:
     ----------
     begin : float or None
         When it begins [s]; None where the recording starts later.
+    begin_spread : float
+        Standard deviation of `begin` [s].
     stop : float
         When the command stops [s]; the first sample's time where the recording starts later.
     spread : float
         Standard deviation of `stop` [s]; 0 when it was given or the recording starts there.
     floor : ndarray or None, shape (channel,)
         Standard deviation of each channel before the move.
-    top : float or None
-        Largest speed, in the unit of the values times seconds; None where the beginning is not recorded.
     """
 
     begin: float | None
+    begin_spread: float
     stop: float
     spread: float
     floor: _Array | None
-    top: float | None
+
+    def top(self, series: TimeSeries) -> float | None:
+        """Largest speed until the stop, in the unit of the values times seconds; None without the beginning."""
+        if self.begin is None:
+            return None
+        first = int((self.begin - series.start) * series.sample_rate)
+        last = round((self.stop - series.start) * series.sample_rate)
+        if not 0 < first < last:
+            return None
+        moving = series.values - series.values[:, :first].mean(axis=-1, keepdims=True)
+        speeds = np.cumsum(moving[:, :last], axis=-1) / series.sample_rate
+        return float(np.sqrt(np.max(np.sum(speeds**2, axis=0))))
 
 
-def find_motion(series: TimeSeries, stop: float | None) -> Motion:
-    """Beginning, stop and floor of a recording; `stop` [s] when it is known.
+def find_motion(series: TimeSeries) -> Motion:
+    """Beginning and floor of a recording; the stop is still to be found."""
+    begin, spread, floor = _beginning(series)
+    return Motion(begin, spread, series.start, 0.0, floor)
+
+
+def _beginning(series: TimeSeries) -> tuple[float | None, float, _Array | None]:
+    """When the record stops being quiet, the standard deviation of that, and the noise until then.
+
+    None, 0 and None when it begins in motion.
+    """
+    nothing = None, 0.0, None
+    if series.values.shape[-1] < 2 * QUIETEST:
+        return nothing
+    first = series.values[:, :QUIETEST]
+    middle, noise = first.mean(axis=-1, keepdims=True), first.std(axis=-1, keepdims=True) + np.finfo(float).tiny
+    off = np.abs(series.values - middle)
+    # A record that begins in motion has its largest deviations there.
+    if not np.any(np.quantile(off, MOVING, axis=-1) > LOUD * noise[:, 0]):
+        return nothing
+    loud = np.flatnonzero((off > LOUD * noise).sum(axis=0))
+    loud = loud[loud >= QUIETEST]
+    # A single outlier is none: two of the next three are loud, too.
+    onset = next((int(k) for k in loud if np.count_nonzero((loud > k) & (loud <= k + 3)) >= 2), None)
+    if onset is None:
+        return nothing
+    quiet = series.values[:, : max(int(SURELY_QUIET * onset), QUIETEST)]
+    floor = quiet.std(axis=-1, ddof=1) + np.finfo(float).tiny
+    # The same question as at the stop, with time reversed and nothing that rings.
+    last = min(onset + FEWEST_FREE, series.values.shape[-1])
+    window = series.values[:, max(onset - 2 * QUIETEST, 0) : last][:, ::-1] - quiet.mean(axis=-1, keepdims=True)
+    noises = np.repeat(floor[:, None], window.shape[-1], axis=-1)
+    at, spread = change_point(window, noises, series.values.std(axis=-1) + np.finfo(float).tiny)
+    return series.start + (last - 1 - at) / series.sample_rate, spread / series.sample_rate, np.asarray(floor)
+
+
+def find_stop(series: TimeSeries, begin: float | None) -> tuple[float, float]:
+    """The stop [s] and its standard deviation, for a move that began at `begin`, or before the recording (None).
 
     The stop is the earliest time from which on the record is free vibration: a free part is found near the end, and
     continued backwards as long as what was measured before agrees with it.
     """
-    begin, floor = _beginning(series)
-    spread = 0.0
-    if stop is None:
-        stop, spread = _stop(series, begin)
-    top = None
-    if begin is not None and floor is not None:
-        first = round((begin - series.start) * series.sample_rate)
-        last = round((stop - series.start) * series.sample_rate)
-        moving = series.values - series.values[:, :first].mean(axis=-1, keepdims=True)
-        speeds = np.cumsum(moving[:, :last], axis=-1) / series.sample_rate
-        top = float(np.sqrt(np.max(np.sum(speeds**2, axis=0)))) if last > first else None
-    return Motion(begin, stop, spread, floor, top)
-
-
-def _beginning(series: TimeSeries) -> tuple[float | None, _Array | None]:
-    """When the record stops being quiet, and the noise until then; (None, None) when it begins in motion."""
-    first = series.values[:, :QUIETEST]
-    if first.shape[-1] < QUIETEST:
-        return None, None
-    middle, noise = first.mean(axis=-1, keepdims=True), first.std(axis=-1, keepdims=True)
-    whole = float(np.sqrt(np.sum(np.var(series.values, axis=-1))))
-    if float(np.sqrt(np.sum(noise**2))) > whole / LOUD:
-        return None, None
-    tiny = np.finfo(float).tiny
-    loud = np.flatnonzero((np.abs(series.values - middle) > LOUD * (noise + tiny)).sum(axis=0))
-    loud = loud[loud >= QUIETEST]
-    if not loud.size:
-        return None, None
-    # A single outlier is none: two of the next three are loud, too.
-    onset = next((int(k) for k in loud if np.count_nonzero((loud > k) & (loud <= k + 3)) >= 2), int(loud[0]))
-    quiet = series.values[:, : max(int(SURELY_QUIET * onset), QUIETEST)]
-    return series.start + onset / series.sample_rate, np.asarray(quiet.std(axis=-1, ddof=1))
-
-
-def _stop(series: TimeSeries, begin: float | None) -> tuple[float, float]:
-    """The stop [s] and its standard deviation."""
     rate, values, samples = series.sample_rate, series.values, series.values.shape[-1]
     decay = find_free_decay(series, MOST_MODES)
     if decay is None:
@@ -115,10 +129,11 @@ def _stop(series: TimeSeries, begin: float | None) -> tuple[float, float]:
     found = round((decay.start - series.start) * rate)
     if begin is None and found <= max(2.0 * rate / decay.rate, 3.0):
         return series.start, 0.0
+    step = max(round(rate / decay.rate), 1)
     earliest = 0 if begin is None else round((begin - series.start) * rate)
     free = max(found, earliest + 1)
     free += max(int(SURELY_FREE * (samples - free)), FEWEST_FREE)
-    fit = _components(values, rate, free)
+    fit = _components(values, rate, free, step)
     if fit is None:
         return decay.start, 1.0 / decay.rate
     middle, spread = _break(values, rate, fit, free, earliest)
@@ -126,7 +141,7 @@ def _stop(series: TimeSeries, begin: float | None) -> tuple[float, float]:
         for earlier in EARLIER:
             head = max(round(earlier * rate), FEWEST_FREE)
             start = int(middle) - head
-            more = _components(values, rate, start) if start > earliest else None
+            more = _components(values, rate, start, step) if start > earliest else None
             if more is not None and left_at_start(values, rate, more, start, head) < STILL_FREE:
                 middle, spread = _break(values, rate, more, start, earliest)
                 break
@@ -140,11 +155,12 @@ def _break(values: _Array, rate: float, fit: DecayFit, free: int, earliest: int)
     if broken is None:
         return float(earliest), FEWEST_FREE
     moving = values[:, earliest:free]
-    middle, spread = change_point(broken.off, broken.covariances, moving.std(axis=-1) + np.finfo(float).tiny)
+    middle, spread = change_point(broken.off, broken.noise, moving.std(axis=-1) + np.finfo(float).tiny)
     return broken.first + middle, spread
 
 
-def _components(values: _Array, rate: float, first: int) -> DecayFit | None:
-    """Of the samples from `first` on."""
+def _components(values: _Array, rate: float, first: int, step: int) -> DecayFit | None:
+    """Of the samples from `first` on, thinned by means of so many: decaying sinusoids stay what they are."""
     tail = values[:, first:]
-    return decay_components(tail, rate) if tail.shape[-1] >= FEWEST_FREE else None
+    tail = tail[:, : tail.shape[-1] // step * step].reshape(tail.shape[0], -1, step).mean(axis=-1)
+    return decay_components(tail, rate / step) if tail.shape[-1] >= FEWEST_FREE else None
