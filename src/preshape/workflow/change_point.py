@@ -13,7 +13,10 @@ from numpy.typing import NDArray
 __all__ = ["change_point"]
 
 NEAR = 12
-"""Samples before the change over which what is off is a parabola."""
+"""Samples before the change over which what is off is smooth."""
+
+KINDS = 3
+"""It begins with a jump, a slope or a curvature."""
 
 SIZES = (1.0, 0.1)
 """Of what is off, as parts of the motion."""
@@ -35,16 +38,16 @@ def change_point(off: _Array, noise: _Array, sizes: _Array) -> tuple[float, floa
     places = np.arange(1, samples + 1)
     scaled = off / noise
     free = 0.5 * scaled**2
-    logs = np.full((places.size, 2 * len(SIZES)), -np.inf)
+    logs = np.full((places.size, KINDS * len(SIZES)), -np.inf)
     for column, part in enumerate(SIZES):
         wide = 1.0 + (part * sizes[:, None] / noise) ** 2
         apart = 0.5 * (scaled**2 / wide + np.log(wide))
         for row, place in enumerate(places):
             near = max(place - NEAR, 0)
             known = float(-np.sum(free[:, place:]) - np.sum(apart[:, :near]))
-            for kind in range(2):  # with a jump, and without one
+            for kind in range(KINDS):
                 size = part * sizes[:, None] / noise[:, near:place]
-                logs[row, 2 * column + kind] = known + _smooth(scaled[:, near:place], size, kind)
+                logs[row, KINDS * column + kind] = known + _smooth(scaled[:, near:place], size, kind)
     weights = np.exp(logs - logs.max()).sum(axis=1)
     weights /= weights.sum()
     # The change is somewhere between the last sample that is off and the next one.
@@ -53,10 +56,10 @@ def change_point(off: _Array, noise: _Array, sizes: _Array) -> tuple[float, floa
 
 
 def _smooth(scaled: _Array, sizes: _Array, least: int) -> float:
-    """Log likelihood of a parabola plus noise of variance 1, over that of a constant density; powers from `least`."""
+    """Log likelihood of three powers plus noise of variance 1, over that of a constant density; powers from `least`."""
     ago = np.arange(scaled.shape[-1], 0, -1) / NEAR
-    powers = np.stack([ago**power for power in range(least, 3)], axis=-1)
-    rows = sizes[:, :, None] * powers * 3.0 ** np.arange(least, 3)
+    powers = np.stack([ago**power for power in range(least, least + 3)], axis=-1)
+    rows = sizes[:, :, None] * powers * 3.0 ** np.arange(least, least + 3)
     inner = np.eye(powers.shape[-1]) + np.einsum("csi,csj->cij", rows, rows)
     right = np.einsum("csi,cs->ci", rows, scaled)
     solved = np.linalg.solve(inner, right[:, :, None])[:, :, 0]

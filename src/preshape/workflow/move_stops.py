@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from preshape.errors import InputError
-from preshape.identify import TimeSeries
+from preshape.identify import TimeSeries, ring_down
+from preshape.mode import Mode
 from preshape.shaper import Shaper
 from preshape.workflow.same_move import Overlay, overlaid
 from preshape.workflow.stop_time import Motion, find_motion, find_stop
@@ -28,7 +29,16 @@ SURELY_AFTER = 2.0
 """The vibration is free so many standard deviations after the stop."""
 
 VAGUE = 0.003
-"""A stop whose standard deviation is larger is not known [s]."""
+"""A stop whose standard deviation is larger is said not to be known [s]."""
+
+ALONE = 0.001
+"""Standard deviation of a stop that was found, at least [s]."""
+
+LATEST = 0.02
+"""The guard is at most so long [s]."""
+
+FEWEST = 32
+"""Samples in which modes are looked for."""
 
 Named = Sequence[tuple[str, TimeSeries]]
 
@@ -83,76 +93,96 @@ def find_stops(
     if stop is not None:
         given = [tuple(replace(m, stop=at, spread=0.0) for m in side) for side, at in zip(sides, stop, strict=True)]
         return Stops(given[0], given[1], 0.0, 0.0, False, ())
+    if lasting is not None:
+        for (name, _), motion in zip(before, sides[0], strict=True):
+            if motion.begin is None:
+                raise InputError(
+                    f"{name} does not show the beginning of the move, from which the time it takes is counted: record "
+                    "from rest, or give the stop."
+                )
     trouble: list[str] = []
-    first = _alone(*before[0], sides[0][0], lasting)
-    side_b, _, odd = _laid_over(before[0][1], first, before, sides[0], None)
-    trouble += [f"{name}: {_OTHER}" for name in odd]
-    if shaper is not None:
-        side_a, overlays, odd = _laid_over(before[0][1], first, after, sides[1], shaper)
-    if shaper is None or odd or None in overlays:
-        if shaper is not None and odd:
-            trouble.append(
-                f"{', '.join(odd)}: the recording is not what the shaper makes of {before[0][0]}: the machine executed "
-                "another shaper, or it was another move."
-            )
-        alone = _alone(*after[0], sides[1][0], None)
-        side_a, _, odd = _laid_over(after[0][1], alone, after, sides[1], None)
-        trouble += [f"{name}: {_OTHER}" for name in odd]
-        between = math.hypot(first.spread, alone.spread)
-    else:
-        known = [one for one in overlays if one is not None]
-        between = float(np.mean([one.spread for one in known]))
-        trouble += _stretched(known, shaper)
-    spread = max(motion.spread for motion in (*side_b, *side_a))
-    doubtful = spread > VAGUE
-    if doubtful:
+    starts = [_alone(before[k][1], m, lasting) for k, m in enumerate(sides[0])]
+    known = _modes_after(before[0][1], starts[0][0])
+    ends = [find_stop(one, m.begin, known) for (_, one), m in zip(after, sides[1], strict=True)]
+    overlays = [_overlay(before[0], sides[0][0], one, m, shaper) for one, m in zip(after, sides[1], strict=True)]
+    odd = [
+        name for (name, _), one in zip(after, overlays, strict=True) if one is not None and one.unexplained > OTHER_MOVE
+    ]
+    if odd:
         trouble.append(
-            f"the stop was not found to better than {1e3 * spread:.0f} ms: give it, or how long the move lasts."
+            f"{', '.join(odd)}: the recording is not what the shaper makes of {before[0][0]}: the machine executed "
+            "another shaper, or it was another move."
         )
-    return Stops(tuple(side_b), tuple(side_a), between, SURELY_AFTER * spread, doubtful, tuple(trouble))
-
-
-_OTHER = "the recording is not of the same move as the first of its kind."
-
-
-def _alone(name: str, series: TimeSeries, motion: Motion, lasting: float | None) -> Motion:
-    """A motion with the stop that its own recording shows."""
+    fitting = [one for one in overlays if one is not None and one.unexplained <= OTHER_MOVE]
+    if shaper is None or len(fitting) < len(after):
+        moved = [
+            [replace(m, stop=at, spread=max(spread, ALONE)) for m, (at, spread) in zip(side, found, strict=True)]
+            for side, found in zip(sides, (starts, ends), strict=True)
+        ]
+        begun = all(m.begin is not None for side in sides for m in side)
+        spread = max(m.spread for side in moved for m in side) if begun else 0.0
+        between = math.sqrt(2.0) * spread
+        doubtful = bool(odd) or spread > VAGUE
+        if shaper is not None and not odd and begun is False:
+            moved = [[replace(m, spread=0.0) for m in side] for side in moved]
+        return _told(moved, between, spread, doubtful, trouble)
+    # Every recording tells the stop of the first one.
+    same = [_overlay(before[0], sides[0][0], one, m, None) for one, m in zip(before[1:], sides[0][1:], strict=True)]
+    off = [name for (name, _), one in zip(before[1:], same, strict=True) if one is None or one.unexplained > OTHER_MOVE]
+    if off:
+        trouble.append(f"{', '.join(off)}: the move is not that of {before[0][0]}.")
+    later = [0.0, *(one.later if one is not None else 0.0 for one in same)]
+    votes = [at - shift for (at, _), shift in zip(starts, later, strict=True)]
     if lasting is None:
-        at, spread = find_stop(series, motion.begin)
-        return replace(motion, stop=at, spread=spread)
-    if motion.begin is None:
-        raise InputError(
-            f"{name} does not show the beginning of the move, which --lasting counts from: record from rest, or give "
-            "the stop."
-        )
-    return replace(motion, stop=motion.begin + lasting, spread=motion.begin_spread)
+        votes += [at - one.later for (at, _), one in zip(ends, fitting, strict=True)]
+        spread = max(max(votes) - min(votes), ALONE)
+    else:
+        spread = max(sides[0][0].begin_spread, max(votes) - min(votes), 0.25 / before[0][1].sample_rate)
+    middle = float(np.median(votes))
+    moved = [
+        [replace(m, stop=middle + shift, spread=spread) for m, shift in zip(sides[0], later, strict=True)],
+        [replace(m, stop=middle + one.later, spread=spread) for m, one in zip(sides[1], fitting, strict=True)],
+    ]
+    trouble += _stretched(fitting, shaper)
+    return _told(moved, float(np.mean([one.spread for one in fitting])), spread, False, trouble)
 
 
-def _laid_over(
-    reference: TimeSeries, known: Motion, side: Named, motions: Sequence[Motion], shaper: Shaper | None
-) -> tuple[list[Motion], list[Overlay | None], list[str]]:
-    """Motions whose stops follow from a known one, how each recording lies over it, and names of what does not fit."""
-    found: list[Motion] = []
-    overlays: list[Overlay | None] = []
-    odd: list[str] = []
-    for (name, series), motion in zip(side, motions, strict=True):
-        overlay = None
-        if series is reference:
-            found.append(known)
-            overlays.append(None)
-            continue
-        if known.floor is not None and motion.floor is not None:
-            overlay = overlaid(reference, series, shaper, (known.floor, motion.floor))
-            if overlay.unexplained > OTHER_MOVE:
-                odd.append(name)
-                overlay = None
-        if overlay is not None:
-            at, spread = known.stop + overlay.later, math.hypot(known.spread, overlay.spread)
-        else:
-            at, spread = find_stop(series, motion.begin)
-        overlays.append(overlay)
-        found.append(replace(motion, stop=at, spread=spread))
-    return found, overlays, odd
+def _told(
+    moved: Sequence[Sequence[Motion]], between: float, spread: float, doubtful: bool, trouble: list[str]
+) -> Stops:
+    if spread > VAGUE:
+        trouble = [
+            *trouble,
+            f"the stop was not found to better than {1e3 * spread:.0f} ms, and amplitudes are so much less sure: give it "
+            "(--stop), or how long the unshaped move lasts (--lasting).",
+        ]
+    return Stops(
+        tuple(moved[0]), tuple(moved[1]), between, min(SURELY_AFTER * spread, LATEST), doubtful, tuple(trouble)
+    )
+
+
+def _alone(series: TimeSeries, motion: Motion, lasting: float | None) -> tuple[float, float]:
+    """The stop of an unshaped recording by itself, and its standard deviation [s]."""
+    if lasting is not None and motion.begin is not None:
+        return motion.begin + lasting, motion.begin_spread
+    return find_stop(series, motion.begin)
+
+
+def _modes_after(series: TimeSeries, stop: float) -> list[Mode]:
+    first = max(round((stop - series.start) * series.sample_rate), 0)
+    values = series.values[:, first:]
+    if values.shape[-1] < FEWEST:
+        return []
+    return [one.mode for one in ring_down(replace(series, values=values, remarks=())).modes]
+
+
+def _overlay(
+    first: tuple[str, TimeSeries], begun: Motion, second: tuple[str, TimeSeries], motion: Motion, shaper: Shaper | None
+) -> Overlay | None:
+    """None where one of them does not show the beginning."""
+    if begun.floor is None or motion.floor is None:
+        return None
+    return overlaid(first[1], second[1], shaper, (begun.floor, motion.floor))
 
 
 def _stretched(overlays: Sequence[Overlay], shaper: Shaper) -> list[str]:

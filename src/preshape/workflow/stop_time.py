@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape.identify import TimeSeries
-from preshape.identify.decaying_sinusoids import DecayFit
+from preshape.identify import TimeSeries, ring_down
 from preshape.identify.free_decay import find_free_decay
+from preshape.mode import Mode
 from preshape.workflow.change_point import change_point
-from preshape.workflow.free_continuation import continued, decay_components, left_at_start
 
 __all__ = ["Motion", "find_motion", "find_stop"]
 
 MOST_MODES = 4
-"""Modes that are looked for to find the free part."""
+"""Modes of the vibration that is continued backwards."""
 
-SURELY_FREE = 0.05
-FEWEST_FREE = 8
-"""Part of the free decay that is skipped, and samples at least, as its beginning may be early."""
+SURELY_FREE = 0.2
+"""Part of the free decay that is skipped, as its beginning may be early."""
 
 LOUD = 5.0
 """A sample is no noise when it is off by so many standard deviations."""
@@ -28,17 +27,29 @@ LOUD = 5.0
 QUIETEST = 24
 SURELY_QUIET = 0.7
 MOVING = 0.95
-"""Samples that must be quiet before the move for the floor to be known, the part of the time before it that is,
-and the part of all samples that may be quiet."""
+"""Samples that must be quiet before the move for the floor to be known, the part of the time before it that is, and the
+part of all samples that may be quiet."""
 
-EARLIER = (0.02, 0.005)
-"""Components that have died away where the vibration is surely free are looked for so much earlier [s]."""
+ONSET = 8
+"""Samples after the first loud one that are looked at to find the beginning."""
 
-EXTENSIONS = 6
-"""So often."""
+WIDTHS = (4, 8, 16, 32)
+"""Samples over which it is asked whether they continue the free vibration backwards."""
 
-STILL_FREE = 1.6
-"""What is left there, in mean squares of the rest, at most."""
+NEAR = 0.1
+"""A mode of this recording that is as near to a known one is that one, less well known."""
+
+STRONG = 0.1
+"""Share of the vibration from which on a mode that is not known is believed."""
+
+MODEL_ERROR = 0.02
+"""Part of the vibration by which its continuation may be off."""
+
+LEAST_SPREAD = 1.0
+"""Standard deviation of the stop, in samples, at least."""
+
+UNLIKELY = 5.5
+"""Their mean is off by so many standard deviations of the noise where the vibration is not free."""
 
 _Array = NDArray[np.float64]
 
@@ -109,18 +120,19 @@ def _beginning(series: TimeSeries) -> tuple[float | None, float, _Array | None]:
     quiet = series.values[:, : max(int(SURELY_QUIET * onset), QUIETEST)]
     floor = quiet.std(axis=-1, ddof=1) + np.finfo(float).tiny
     # The same question as at the stop, with time reversed and nothing that rings.
-    last = min(onset + FEWEST_FREE, series.values.shape[-1])
+    last = min(onset + ONSET, series.values.shape[-1])
     window = series.values[:, max(onset - 2 * QUIETEST, 0) : last][:, ::-1] - quiet.mean(axis=-1, keepdims=True)
     noises = np.repeat(floor[:, None], window.shape[-1], axis=-1)
     at, spread = change_point(window, noises, series.values.std(axis=-1) + np.finfo(float).tiny)
     return series.start + (last - 1 - at) / series.sample_rate, spread / series.sample_rate, np.asarray(floor)
 
 
-def find_stop(series: TimeSeries, begin: float | None) -> tuple[float, float]:
+def find_stop(series: TimeSeries, begin: float | None, known: Sequence[Mode] = ()) -> tuple[float, float]:
     """The stop [s] and its standard deviation, for a move that began at `begin`, or before the recording (None).
 
     The stop is the earliest time from which on the record is free vibration: a free part is found near the end, and
-    continued backwards as long as what was measured before agrees with it.
+    continued backwards as long as what was measured before agrees with it. One time in three that is wrong by more than
+    a millisecond, so it takes two recordings to be believed.
     """
     rate, values, samples = series.sample_rate, series.values, series.values.shape[-1]
     decay = find_free_decay(series, MOST_MODES)
@@ -129,38 +141,90 @@ def find_stop(series: TimeSeries, begin: float | None) -> tuple[float, float]:
     found = round((decay.start - series.start) * rate)
     if begin is None and found <= max(2.0 * rate / decay.rate, 3.0):
         return series.start, 0.0
-    step = max(round(rate / decay.rate), 1)
     earliest = 0 if begin is None else round((begin - series.start) * rate)
-    free = max(found, earliest + 1)
-    free += max(int(SURELY_FREE * (samples - free)), FEWEST_FREE)
-    fit = _components(values, rate, free, step)
-    if fit is None:
-        return decay.start, 1.0 / decay.rate
-    middle, spread = _break(values, rate, fit, free, earliest)
-    for _ in range(EXTENSIONS):
-        for earlier in EARLIER:
-            head = max(round(earlier * rate), FEWEST_FREE)
-            start = int(middle) - head
-            more = _components(values, rate, start, step) if start > earliest else None
-            if more is not None and left_at_start(values, rate, more, start, head) < STILL_FREE:
-                middle, spread = _break(values, rate, more, start, earliest)
-                break
-        else:
-            break
-    return series.start + middle / rate, spread / rate
+    at = max(found, earliest + 1)
+    later = at + int(SURELY_FREE * (samples - at))
+    # With known modes only what is not known is wanted here, and must not come from the end of the move.
+    found_here = ring_down(_from(series, later if known else at)).modes or ring_down(series).modes
+    own = [one.mode for one in found_here if not known or one.share > STRONG]
+    modes = [*known, *(one for one in own if all(abs(one.frequency / other.frequency - 1.0) > NEAR for other in known))]
+    if not modes:
+        return series.start + found / rate, 1.0 / decay.rate
+    at = later
+    past = _Continuation(values, rate, np.array([one.pole for one in modes]))
+    while at > earliest + WIDTHS[0]:
+        widths = [width for width in WIDTHS if at - width >= earliest]
+        off, odds = past.at(at, widths[-1])
+        broken = [width for width, odd in zip(WIDTHS, odds, strict=False) if odd > UNLIKELY]
+        if broken:
+            free, spread = _free_samples(off[:, -broken[0] :])
+            return series.start + (at - free) / rate, max(spread, LEAST_SPREAD) / rate
+        at -= 2
+    return (series.start, 0.0) if begin is None else (series.start + at / rate, WIDTHS[0] / rate)
 
 
-def _break(values: _Array, rate: float, fit: DecayFit, free: int, earliest: int) -> tuple[float, float]:
-    broken = continued(values, rate, fit, free, earliest)
-    if broken is None:
-        return float(earliest), FEWEST_FREE
-    moving = values[:, earliest:free]
-    middle, spread = change_point(broken.off, broken.noise, moving.std(axis=-1) + np.finfo(float).tiny)
-    return broken.first + middle, spread
+def _from(series: TimeSeries, first: int) -> TimeSeries:
+    return replace(series, start=series.start + first / series.sample_rate, values=series.values[:, first:], remarks=())
 
 
-def _components(values: _Array, rate: float, first: int, step: int) -> DecayFit | None:
-    """Of the samples from `first` on, thinned by means of so many: decaying sinusoids stay what they are."""
-    tail = values[:, first:]
-    tail = tail[:, : tail.shape[-1] // step * step].reshape(tail.shape[0], -1, step).mean(axis=-1)
-    return decay_components(tail, rate / step) if tail.shape[-1] >= FEWEST_FREE else None
+class _Continuation:
+    """Free vibration fitted to the end of a record, and continued backwards; cheap at every sample.
+
+    The sums of the normal equations run from the end of the record, so that every start is one small system.
+    """
+
+    def __init__(self, values: _Array, rate: float, poles: NDArray[np.complex128]) -> None:
+        samples = values.shape[-1]
+        waves = np.exp(np.multiply.outer(np.arange(samples) / rate, poles))
+        self._basis = np.concatenate([waves.real, waves.imag, np.ones((samples, 1))], axis=1)
+        self._values = values - values[:, -samples // 4 :].mean(axis=-1, keepdims=True)
+        self._normal = _from_end(self._basis[:, :, None] * self._basis[:, None, :])
+        self._right = _from_end(self._basis[:, :, None] * self._values.T[:, None, :])
+        self._squares = _from_end(self._values.T**2)
+
+    def at(self, first: int, width: int) -> tuple[_Array, list[float]]:
+        """How far the `width` samples before `first` are off, over the noise, and how unlikely that is.
+
+        The odds are those of the mean of the last w of them, in standard deviations, for each of `WIDTHS`: a command
+        that has not stopped is first of all an offset.
+        """
+        scale = 1.0 / np.maximum(np.sqrt(np.diagonal(self._normal[first])), 1e-150)
+        inverse = scale[:, None] * np.linalg.pinv(scale[:, None] * self._normal[first] * scale) * scale
+        found = inverse @ self._right[first]
+        rest = self._squares[first] - np.sum(found * self._right[first], axis=0)
+        freedoms = max(self._values.shape[-1] - first - found.shape[0], 1)
+        noise = np.sqrt(np.maximum(rest, 0.0) / freedoms) + np.finfo(float).tiny
+        rows = self._basis[first - width : first]
+        ahead = (rows @ found).T
+        # The poles are not exact: continued backwards, the vibration may be off by a small part of itself.
+        noise = np.hypot(noise, MODEL_ERROR * np.abs(ahead).max(axis=-1))
+        off = (self._values[:, first - width : first] - ahead) / noise[:, None]
+        odds = []
+        for last in (one for one in WIDTHS if one <= width):
+            summed = rows[-last:].sum(axis=0)
+            deviation = np.sqrt(last + float(summed @ inverse @ summed))
+            odds.append(float(np.abs(off[:, -last:].sum(axis=-1)).max() / deviation))
+        return off, odds
+
+
+def _from_end(rows: _Array) -> _Array:
+    """Sums from each row to the last."""
+    return np.asarray(np.cumsum(rows[::-1], axis=0)[::-1])
+
+
+def _free_samples(off: _Array) -> tuple[float, float]:
+    """How many of the last samples are still free, and the standard deviation of that.
+
+    Before the stop they are off by an offset and a slope, after it by noise alone; all places weighted by likelihood.
+    """
+    width = off.shape[-1]
+    costs = []
+    for count in range(2, width + 1):
+        line = np.stack([np.ones(count), np.arange(count)], axis=1)
+        before = off[:, :count]
+        rest = before - (line @ (np.linalg.pinv(line) @ before.T)).T
+        costs.append(float(np.sum(rest**2) + np.sum(off[:, count:] ** 2)))
+    weights = np.exp(-0.5 * (np.array(costs) - min(costs)))
+    free = width - np.arange(2, width + 1)
+    mean = float(weights @ free / weights.sum())
+    return mean, float(np.sqrt(weights @ (free - mean) ** 2 / weights.sum()))
