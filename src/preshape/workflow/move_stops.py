@@ -1,7 +1,8 @@
 """When the move stops in each of several recordings of it, and how surely.
 
-The stop of the first unshaped recording is found in itself, or is its beginning and the time that the move is known to
-take. All others follow from it by laying the recordings over each other. Where that fails, each stands for itself.
+The recordings are laid over each other, so that the stop of one tells those of all. Each recording gives its vote on
+where that is; how far the votes are apart is how surely it is known. Where the time that the move takes is known, the
+stop is so long after the beginning. Where the recordings do not fit, each stands for itself.
 """
 
 from __future__ import annotations
@@ -123,7 +124,7 @@ def find_stops(
         spread = max(m.spread for side in moved for m in side) if begun else 0.0
         between = math.sqrt(2.0) * spread
         doubtful = bool(odd) or spread > VAGUE
-        if shaper is not None and not odd and begun is False:
+        if not begun:  # a recording that starts at the stop has no earlier one to look for
             moved = [[replace(m, spread=0.0) for m in side] for side in moved]
         return _told(moved, between, spread, doubtful, trouble)
     # Every recording tells the stop of the first one.
@@ -153,8 +154,8 @@ def _told(
     if spread > VAGUE:
         trouble = [
             *trouble,
-            f"the stop was not found to better than {1e3 * spread:.0f} ms, and amplitudes are so much less sure: give it "
-            "(--stop), or how long the unshaped move lasts (--lasting).",
+            f"the stop was not found to better than {1e3 * spread:.0f} ms, and amplitudes are so much less sure: "
+            "give it (--stop), or how long the unshaped move lasts (--lasting).",
         ]
     return Stops(
         tuple(moved[0]), tuple(moved[1]), between, min(SURELY_AFTER * spread, LATEST), doubtful, tuple(trouble)

@@ -109,9 +109,9 @@ def verify(
     sides = [_recordings(before, "before"), _recordings(after, "after")]
     everything = [one for side in sides for one in side]
     _check_alike(everything)
-    stops = find_stops(
-        sides[0], sides[1], shaper, _stops(stop), None if lasting is None else positive("lasting", lasting, "s")
-    )
+    if lasting is not None:
+        lasting = positive("lasting", lasting, "s")
+    stops = find_stops(sides[0], sides[1], shaper, _stops(stop), lasting)
     motions = (stops.before, stops.after)
     tails = [_tails(side, moved, stops.guard) for side, moved in zip(sides, motions, strict=True)]
     found = _modes(tails[0], sides[0][0][1])
