@@ -49,6 +49,11 @@ class Pair:
     stops: tuple[float, float]
     lasting: float
 
+    @property
+    def stretch(self) -> float:
+        """Of the executed shaper's times, against those of the told one."""
+        return self.executed.duration / self.told.duration
+
     def truth(self, mode: Mode) -> float:
         """The residual vibration that the executed shaper leaves of a mode [-]."""
         return float(residual_vibration(self.executed, mode.frequency, mode.damping))

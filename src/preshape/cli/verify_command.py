@@ -77,9 +77,7 @@ def command(
     kind = None if figure is None else figure_format(figure)
     progress = console(stderr=True)
     with progress.status("reading, finding the stop and the modes ..."):
-        verification = verify(
-            before, after, shaper=told, stop=_stop(stop), lasting=lasting, window=window, below=below
-        )
+        verification = verify(before, after, shaper=told, stop=_stop(stop), lasting=lasting, window=window, below=below)
     written = []
     if figure is not None and kind is not None:
         with progress.status("drawing ..."):

@@ -37,7 +37,7 @@ LEAST = 1e-3
 
 
 def _klipper(axis: str, distance: float, speed: float, acceleration: float, shaper: Shaper | None, repeats: int) -> str:
-    upper = axis.upper()
+    upper, lasting = axis.upper(), _duration(distance, speed, acceleration)
     setting = [
         f"SET_INPUT_SHAPER SHAPER_TYPE_{upper}=mzv SHAPER_FREQ_{upper}=50 DAMPING_RATIO_{upper}=0.1"
         " ; PUT YOUR SHAPER HERE, see: preshape export klipper"
@@ -46,7 +46,7 @@ def _klipper(axis: str, distance: float, speed: float, acceleration: float, shap
         setting = _klipper_lines(shaper, axis)
     lines = [
         "; Home first. Put the head where the move fits; all moves are relative and come back.",
-        f"; Compare with: preshape verify --lasting {_duration(distance, speed, acceleration):.5g} --before ... --after ...",
+        f"; Compare with: preshape verify --lasting {lasting:.5g} --before ... --after ... --shaper ...",
         "; The sensor is [adxl345]; for a named one add CHIP=name to each ACCELEROMETER_MEASURE.",
         "; The files are /tmp/adxl345-<NAME>.csv on the printer's computer.",
         f"SET_VELOCITY_LIMIT VELOCITY={speed:g} ACCEL={acceleration:g}",
@@ -73,12 +73,12 @@ def _klipper(axis: str, distance: float, speed: float, acceleration: float, shap
 
 
 def _rrf(axis: str, distance: float, speed: float, acceleration: float, shaper: Shaper | None, repeats: int) -> str:
-    upper = axis.upper()
-    moving = _duration(distance, speed, acceleration) + (shaper.duration if shaper else 0.2)
+    upper, lasting = axis.upper(), _duration(distance, speed, acceleration)
+    moving = lasting + (shaper.duration if shaper else 0.2)
     samples = math.ceil(RRF_RATE * (QUIET + moving + AFTER))
     lines = [
         "; Home first. Put the head where the move fits; all moves are relative and come back.",
-        f"; Compare with: preshape verify --lasting {_duration(distance, speed, acceleration):.5g} --before ... --after ...",
+        f"; Compare with: preshape verify --lasting {lasting:.5g} --before ... --after ... --shaper ...",
         "; P0 is a sensor on the main board; on a CAN board write its address, such as P121.0 (see M955).",
         f"; {samples} samples at {RRF_RATE:g} Hz (LIS3DH); another rate needs another number.",
         "; The files are in 0:/sys/accelerometer. Discard those whose last line counts overflows.",
