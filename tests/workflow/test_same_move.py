@@ -11,7 +11,7 @@ from preshape.workflow.same_move import overlaid
 
 @pytest.mark.parametrize("obeys", [True, False])
 def test_the_stop_follows_from_the_other_recording(obeys: bool) -> None:
-    """Machines that were not used to choose anything; half a millisecond is the least of what a stop is off by alone."""
+    """Machines that nothing was chosen on; alone, a stop is typically half a millisecond off."""
     noise = np.full(3, 0.01)
     for number in range(8):
         pair = draw(7, number, 0.01, obeys=obeys)
