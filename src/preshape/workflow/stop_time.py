@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from preshape.identify import TimeSeries, ring_down
 from preshape.identify.free_decay import find_free_decay
 from preshape.mode import Mode
-from preshape.workflow.change_point import change_point
 
 __all__ = ["Motion", "find_motion", "find_stop"]
 
@@ -30,8 +29,8 @@ MOVING = 0.95
 """Samples that must be quiet before the move for the floor to be known, the part of the time before it that is, and the
 part of all samples that may be quiet."""
 
-ONSET = 8
-"""Samples after the first loud one that are looked at to find the beginning."""
+BEGUN = 0.001
+"""Standard deviation of a beginning [s]: with limited jerk the first samples are below the noise."""
 
 WIDTHS = (4, 8, 16, 32)
 """Samples over which it is asked whether they continue the free vibration backwards."""
@@ -119,12 +118,7 @@ def _beginning(series: TimeSeries) -> tuple[float | None, float, _Array | None]:
         return nothing
     quiet = series.values[:, : max(int(SURELY_QUIET * onset), QUIETEST)]
     floor = quiet.std(axis=-1, ddof=1) + np.finfo(float).tiny
-    # The same question as at the stop, with time reversed and nothing that rings.
-    last = min(onset + ONSET, series.values.shape[-1])
-    window = series.values[:, max(onset - 2 * QUIETEST, 0) : last][:, ::-1] - quiet.mean(axis=-1, keepdims=True)
-    noises = np.repeat(floor[:, None], window.shape[-1], axis=-1)
-    at, spread = change_point(window, noises, series.values.std(axis=-1) + np.finfo(float).tiny)
-    return series.start + (last - 1 - at) / series.sample_rate, spread / series.sample_rate, np.asarray(floor)
+    return series.start + onset / series.sample_rate, max(BEGUN, 1.0 / series.sample_rate), np.asarray(floor)
 
 
 def find_stop(series: TimeSeries, begin: float | None, known: Sequence[Mode] = ()) -> tuple[float, float]:
