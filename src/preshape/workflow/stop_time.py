@@ -29,7 +29,7 @@ MOVING = 0.95
 """Samples that must be quiet before the move for the floor to be known, the part of the time before it that is, and the
 part of all samples that may be quiet."""
 
-BEGUN = 0.001
+BEGUN = 0.002
 """Standard deviation of a beginning [s]: with limited jerk the first samples are below the noise."""
 
 WIDTHS = (4, 8, 16, 32)
