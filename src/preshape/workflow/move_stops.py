@@ -105,7 +105,11 @@ def find_stops(
     starts = [_alone(before[k][1], m, lasting) for k, m in enumerate(sides[0])]
     known = _modes_after(before[0][1], starts[0][0])
     ends = [find_stop(one, m.begin, known) for (_, one), m in zip(after, sides[1], strict=True)]
-    overlays = [_overlay(before[0], sides[0][0], one, m, shaper) for one, m in zip(after, sides[1], strict=True)]
+    # Without the shaper nothing is known of how one recording follows from the other.
+    overlays = [
+        None if shaper is None else _overlay(before[0], sides[0][0], one, m, shaper)
+        for one, m in zip(after, sides[1], strict=True)
+    ]
     odd = [
         name for (name, _), one in zip(after, overlays, strict=True) if one is not None and one.unexplained > OTHER_MOVE
     ]
@@ -123,7 +127,12 @@ def find_stops(
         begun = all(m.begin is not None for side in sides for m in side)
         spread = max(m.spread for side in moved for m in side) if begun else 0.0
         between = math.sqrt(2.0) * spread
-        doubtful = bool(odd) or spread > VAGUE
+        if shaper is None and begun:
+            trouble.append(
+                "without the shaper the stops cannot be held against each other, and one alone is not to be trusted: "
+                "give the shaper (--shaper), or the stops (--stop)."
+            )
+        doubtful = bool(trouble) or spread > VAGUE
         if not begun:  # a recording that starts at the stop has no earlier one to look for
             moved = [[replace(m, spread=0.0) for m in side] for side in moved]
         return _told(moved, between, spread, doubtful, trouble)
