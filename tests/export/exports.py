@@ -1,4 +1,4 @@
-"""What the tests of exports share: shapers of every family, and an export in a folder."""
+"""What the tests of exports share: shapers of every family, an export in a folder, how near and how damaged it is."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from hypothesis import strategies as st
 from tests.laws import FAMILIES
 
 from preshape import Modes, Shaper
@@ -57,6 +58,23 @@ def assert_executed_as_asked(
         assert (more <= excess + rounding).all(), (mode, more)
         if limits.taps is not None:
             assert (-more <= rounding).all(), (mode, more)
+
+
+def damaged(data: st.DataObject, content: str | bytes, inserts: list[bytes], longest_cut: int) -> bytes:
+    """The content with a byte changed, something cut out, put in or doubled, one to five times."""
+    raw = bytearray(content if isinstance(content, bytes) else content.encode())
+    for _ in range(data.draw(st.integers(1, 5))):
+        at = data.draw(st.integers(0, len(raw)))
+        kind = data.draw(st.sampled_from(["byte", "cut", "insert", "double"]))
+        if kind == "byte" and at < len(raw):
+            raw[at] = data.draw(st.integers(0, 255))
+        elif kind == "cut":
+            del raw[at : at + data.draw(st.integers(1, longest_cut))]
+        elif kind == "insert":
+            raw[at:at] = data.draw(st.sampled_from(inserts))
+        else:
+            raw += raw[at:]
+    return bytes(raw)
 
 
 def executed(target: str, text: str, version: str | None = None, axis: str | None = None) -> Shaper:

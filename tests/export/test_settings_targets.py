@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from tests.export.exports import assert_executed_as_asked
+from tests.export.exports import assert_executed_as_asked, damaged
 from tests.laws import FAMILIES
 
 from preshape import Modes, Shaper, design
@@ -227,22 +227,10 @@ FINISHED = {pair: render(design.zvd((41.3, 0.06)), pair[0], version=pair[1]) for
 def test_damaged_settings_are_a_shaper_or_a_clear_refusal(pair: tuple[str, str], data: st.DataObject) -> None:
     exported: ExportedSettings = FINISHED[pair]
     name = next(iter(exported.files))
-    raw = bytearray(str(exported.files[name]).encode())
-    for _ in range(data.draw(st.integers(1, 5))):
-        at = data.draw(st.integers(0, len(raw)))
-        kind = data.draw(st.sampled_from(["byte", "cut", "insert", "double"]))
-        if kind == "byte" and at < len(raw):
-            raw[at] = data.draw(st.integers(0, 255))
-        elif kind == "cut":
-            del raw[at : at + data.draw(st.integers(1, 60))]
-        elif kind == "insert":
-            raw[at:at] = data.draw(
-                st.sampled_from([b"nan", b"-", b":", b"1e999", b"[", b'"', b"\xff", b"9" * 99, b"\n"])
-            )
-        else:
-            raw += raw[at:]
+    inserts = [b"nan", b"-", b":", b"1e999", b"[", b'"', b"\xff", b"9" * 99, b"\n"]
+    raw = damaged(data, exported.files[name], inserts, 60)
     try:
-        exported.target.execute({name: bytes(raw)})
+        exported.target.execute({name: raw})
     except InputError as error:
         assert len(str(error)) > 10
 

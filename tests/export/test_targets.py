@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.export.exports import DT, NAMES, shaper_of
+from tests.export.exports import DT, NAMES, damaged, shaper_of
 
 from preshape import Mode, Shaper, design
 from preshape.errors import InputError
@@ -168,21 +168,8 @@ def test_damaged_files_are_a_shaper_or_a_clear_refusal(target: str, data: st.Dat
     files = dict(exported.files)
     name = data.draw(st.sampled_from(sorted(files)))
     content = files[name]
-    raw = bytearray(content if isinstance(content, bytes) else content.encode())
-    for _ in range(data.draw(st.integers(1, 5))):
-        at = data.draw(st.integers(0, len(raw)))
-        kind = data.draw(st.sampled_from(["byte", "cut", "insert", "double"]))
-        if kind == "byte" and at < len(raw):
-            raw[at] = data.draw(st.integers(0, 255))
-        elif kind == "cut":
-            del raw[at : at + data.draw(st.integers(1, 400))]
-        elif kind == "insert":
-            raw[at:at] = data.draw(
-                st.sampled_from([b"{", b"}", b"0x1p9999,", b"nan,", b"-", b"/*", b"\xff", b"9" * 99])
-            )
-        else:
-            raw += raw[at:]
-    files[name] = bytes(raw) if data.draw(st.booleans()) else bytes(raw).decode("latin-1")
+    raw = damaged(data, content, [b"{", b"}", b"0x1p9999,", b"nan,", b"-", b"/*", b"\xff", b"9" * 99], 400)
+    files[name] = raw if data.draw(st.booleans()) else raw.decode("latin-1")
     refused_or_read(exported, files)
 
 

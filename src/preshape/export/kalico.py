@@ -1,4 +1,7 @@
-"""Kalico: the impulses themselves in its bleeding-edge-v2, its families in main."""
+"""Kalico: the impulses themselves in its bleeding-edge-v2, its families in main.
+
+The smoothers of bleeding-edge-v2, polynomials in time instead of impulses, are neither written nor executed here.
+"""
 
 from __future__ import annotations
 
@@ -28,6 +31,9 @@ MAIN = Limits(taps=None, resolution="a family, frequency to 0.01 Hz, damping to 
 def _run(text: str, version: str, axis: str | None = None) -> Shaper:
     settings = section_of(text, "input_shaper")
     kinds = {one: settings.get(f"shaper_type_{one}", settings.get("shaper_type", "")).strip() for one in AXES}
+    for one, kind in kinds.items():
+        if version == CUSTOM and kind.startswith("smooth") and axis in (None, one):
+            raise InputError(f"axis {one} has a smoother, {kind[:40]}: only impulses and families are executed here.")
     if version != CUSTOM or "custom" not in kinds.values():
         return execute_families(settings, FAMILIES[version], AXES, axis)
     found = {}

@@ -1,6 +1,7 @@
 """Beckhoff TwinCAT 3: coefficient arrays of a FIR filter, for FB_CTRL_DIGITAL_FILTER of TF4100 or any other FIR block.
 
 A shaper on samples is a FIR filter with few taps: b holds one coefficient for each sample of delay, a its leading 1.
+Its FLOAT is taken for LREAL, double; a controller where it is REAL would round each coefficient once more.
 """
 
 from __future__ import annotations
