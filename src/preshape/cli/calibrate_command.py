@@ -79,3 +79,5 @@ def command(
         saved = save_calibration(calibration, out)
     settings_screen(calibration, saved)
     click.echo(f"Report: {saved.report}\nFigure: {saved.figure}\nShaper: {saved.shaper}")
+    if saved.picks:
+        click.echo(f"Picks:  {', '.join(str(path) for path in saved.picks)}")
