@@ -69,7 +69,7 @@ def test_the_picks_keep_their_promises(name: str) -> None:
 
 @pytest.mark.parametrize("name", SIMULATED)
 def test_every_pick_beats_the_stock_choice_in_what_it_is_for(name: str) -> None:
-    """The optimiser counts the stock choice among its starts: that it returns more than that start is what it is for."""
+    """The stock choice is among the optimiser's starts: to return more than that start is what it is for."""
     trade = design_within(SIMULATED[name])
     stock = trade.stock.score
     assert trade.performance is not None and trade.improved is not None and trade.quality is not None
