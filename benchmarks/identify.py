@@ -113,8 +113,8 @@ def working_machine() -> None:
 
     _report("ours, unaided", ours, records)
     try:
-        from pyoma2.algorithms import SSI  # type: ignore[import-not-found,unused-ignore]
-        from pyoma2.setup.single import SingleSetup  # type: ignore[import-not-found,unused-ignore]
+        from pyoma2.algorithms import SSI
+        from pyoma2.setup.single import SingleSetup
     except ImportError:
         print("pyOMA2 is not installed: pip install pyOMA_2")
         return
