@@ -14,6 +14,7 @@ from preshape.mode import Mode
 __all__ = [
     "FREQUENCY_RESPONSE",
     "IdentifiedMode",
+    "KNOWN_INPUT",
     "Identification",
     "OPERATIONAL",
     "RING_DOWN",
@@ -24,6 +25,7 @@ __all__ = [
 RING_DOWN = "ring-down"
 SPECTRUM_FIT = "spectrum fit"
 FREQUENCY_RESPONSE = "frequency response"
+KNOWN_INPUT = "known input"
 OPERATIONAL = "operational"
 
 
@@ -69,7 +71,8 @@ class Identification:
     fitted : ndarray, shape (frequency,)
         The model's curve at `spectrum.frequencies`; NaN outside the band that was fitted.
     method : str
-        'ring-down', 'spectrum fit', 'frequency response' or 'operational'; of several measurements, all that were used.
+        'ring-down', 'spectrum fit', 'frequency response', 'known input' or 'operational'; of several measurements, all
+        that were used.
     trouble : tuple of str
         Sentences on what is wrong with the measurement or the machine; empty when healthy.
     clear : bool
