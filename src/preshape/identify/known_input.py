@@ -1,8 +1,8 @@
 """Modes from a record with its input beside the outputs: the impulse response, and the modes that ring in it.
 
-The impulse response is the least-squares filter from the input to each output. In frequency it is the H1 estimate, cross
-over auto spectrum, but without a window: nothing leaks, so damping is not spread. A little of the input's power is added
-at all frequencies, so that nothing is made of those where the input had none.
+The impulse response is the least-squares filter from the input to each output. In frequency it is the H1 estimate,
+cross over auto spectrum, but without a window: nothing leaks, so damping is not spread. A little of the input's power
+is added at all frequencies, so that nothing is made of those where the input had none.
 """
 
 from __future__ import annotations
@@ -81,8 +81,8 @@ def modes_of_known_input(series: TimeSeries, name: str, damping: float | None, m
     if explained >= LEAST_EXPLAINED:
         return replace(found, method=KNOWN_INPUT)
     note = (
-        f"the input {name!r} explains only {100.0 * explained:.0f} % of the outputs: noise, a machine that is not linear, "
-        "or not what drives it."
+        f"the input {name!r} explains only {100.0 * explained:.0f} % of the outputs: noise, a machine that is not "
+        "linear, or not what drives it."
     )
     return replace(found, method=KNOWN_INPUT, trouble=(*found.trouble, note), clear=False)
 
