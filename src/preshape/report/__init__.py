@@ -15,7 +15,7 @@ from preshape.report.contour_figure import contour_figure
 from preshape.report.figures import as_svg, figure_bytes, figure_format
 from preshape.report.move_figure import move_figure
 from preshape.report.page import calibration_page, klipper_sentence
-from preshape.report.shaped_simulation import OutputMotion, ShapedSimulation
+from preshape.report.shaped_simulation import ROUNDING, OutputMotion, ShapedSimulation
 from preshape.report.simulation_figure import simulation_figure
 from preshape.report.stabilisation_figure import stabilisation_figure
 from preshape.report.tables import (
@@ -50,6 +50,7 @@ __all__ = [
     "NOISE",
     "Estimate",
     "ModeVerdict",
+    "ROUNDING",
     "Ringing",
     "Verification",
     "FREQUENCY_ERROR",
