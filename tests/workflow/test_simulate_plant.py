@@ -176,7 +176,7 @@ def test_the_example_machine_is_brought_to_rest() -> None:
 
 
 def test_a_command_that_the_arm_does_not_notice_is_said_and_has_no_share() -> None:
-    """Its joints look every 80 ms: a pulse of 20 ms is over before, and 0.1 pm over 0.1 pm is no remaining vibration."""
+    """Its joints look every 80 ms: a pulse of 20 ms is over before, and rounding over rounding is no share."""
     from preshape.plant import ShuttleArm
 
     pulse = np.zeros((6, 3))
