@@ -17,6 +17,8 @@ from click.testing import CliRunner
 from tests.workflow.recordings import klipper_text, recording
 
 import preshape
+import preshape.export
+import preshape.workflow
 from preshape.cli.main import preshape as command_line
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -67,6 +69,8 @@ def test_console_lines_are_accepted(line: str, tmp_path: Path, monkeypatch: pyte
         (tmp_path / name).write_bytes((ROOT / "examples" / "data" / file).read_bytes())
     for name, frequency in (("shaper.json", 8.7), ("x.json", 38.0), ("y.json", 61.0)):
         preshape.design.zvd((frequency, 0.024)).save(tmp_path / name)
+    exported = preshape.export.render(preshape.design.zvd((8.7, 0.024)), "c", dt=0.001, name="gantry_x")
+    preshape.workflow.save_export(exported, tmp_path / "firmware")
     for name, shaper in (("before.csv", None), ("after.csv", preshape.design.zvd((46.0, 0.06)))):
         (tmp_path / name).write_text(klipper_text(recording(shaper)[0]))
     result = CliRunner().invoke(command_line, shlex.split(line)[1:], catch_exceptions=False)

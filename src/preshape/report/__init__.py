@@ -15,12 +15,19 @@ from preshape.report.contour_figure import contour_figure
 from preshape.report.figures import as_svg, figure_bytes, figure_format
 from preshape.report.move_figure import move_figure
 from preshape.report.page import calibration_page, klipper_sentence
-from preshape.report.shaped_simulation import OutputMotion, ShapedSimulation
+from preshape.report.shaped_simulation import ROUNDING, OutputMotion, ShapedSimulation
 from preshape.report.simulation_figure import simulation_figure
 from preshape.report.stabilisation_figure import stabilisation_figure
-from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table, pick_table
-from preshape.report.trade_off import TradeOff, TradePoint, gain_sentences
-from preshape.report.trade_off_figure import trade_off_figure
+from preshape.report.tables import (
+    TextTable,
+    candidate_table,
+    exclusion_sentence,
+    limit_sentence,
+    mode_table,
+    pick_table,
+)
+from preshape.report.trade_off import TradeOff, TradePoint, gain_sentences, robustness_sentence
+from preshape.report.trade_off_figure import TRADE_OFF_TITLE, trade_off_figure
 from preshape.report.verification import (
     AS_PREDICTED,
     DOUBTFUL,
@@ -43,6 +50,7 @@ __all__ = [
     "NOISE",
     "Estimate",
     "ModeVerdict",
+    "ROUNDING",
     "Ringing",
     "Verification",
     "FREQUENCY_ERROR",
@@ -56,6 +64,7 @@ __all__ = [
     "OutputMotion",
     "ShapedSimulation",
     "SimulatedMove",
+    "TRADE_OFF_TITLE",
     "TextTable",
     "TradeOff",
     "TradePoint",
@@ -73,6 +82,7 @@ __all__ = [
     "gain_sentences",
     "klipper_sentence",
     "length_unit",
+    "limit_sentence",
     "mode_table",
     "move_sentence",
     "simulation_figure",
@@ -82,6 +92,7 @@ __all__ = [
     "pick_table",
     "trade_off_figure",
     "residual_table",
+    "robustness_sentence",
     "verification_figure",
     "verification_table",
 ]

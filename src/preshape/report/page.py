@@ -7,8 +7,16 @@ from html import escape
 from preshape.report.calibration import Calibration
 from preshape.report.calibration_figure import calibration_figure
 from preshape.report.figures import as_svg
-from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table, pick_table, time_unit
-from preshape.report.trade_off import gain_sentences
+from preshape.report.tables import (
+    TextTable,
+    candidate_table,
+    exclusion_sentence,
+    limit_sentence,
+    mode_table,
+    pick_table,
+    time_unit,
+)
+from preshape.report.trade_off import gain_sentences, robustness_sentence
 from preshape.report.trade_off_figure import trade_off_figure
 
 __all__ = ["calibration_page", "klipper_sentence"]
@@ -31,6 +39,7 @@ th:first-child, td:first-child, .candidates td:nth-child(2), .candidates th:nth-
 th { font-weight: 600; color: var(--soft); vertical-align: bottom; }
 tr.chosen td { font-weight: 700; color: var(--accent); }
 tr.excluded td { color: #8a8a8a; }
+tr.fragile td:last-child { color: var(--warn); font-weight: 700; }
 svg { width: 100%; height: auto; }
 pre { background: #f5f5f5; padding: .4rem .7rem; margin: .2rem 0 .6rem; overflow-x: auto; font-size: .85rem; }
 footer { color: var(--soft); font-size: .85rem; margin-top: 1.2rem; border-top: 1px solid var(--line);
@@ -135,10 +144,16 @@ def _trade_off(calibration: Calibration, drawn: str | None) -> str:
         return ""
     figure = as_svg(trade_off_figure(trade)) if drawn is None else drawn
     gains = gain_sentences(trade)
-    table = _html_table(pick_table(trade), [""] * (1 + len(trade.picks)))
-    sentences = "".join(f"<p>{escape(sentence)}</p>" for sentence in gains)
+    fragile = [one in trade.fragile for one in (trade.stock, *trade.picks)]
+    table = _html_table(pick_table(trade), ["fragile" if one else "" for one in fragile])
+    sentences = "".join(
+        f"<p>{escape(sentence)}</p>" for sentence in (limit_sentence(trade, calibration.maximum_impulses), *gains)
+    )
+    off = robustness_sentence(trade)
+    if off:
+        sentences += f'<div class="trouble">{escape(off)}</div>' if trade.fragile else f"<p>{escape(off)}</p>"
     image = f'<div role="img" aria-label="{escape(" ".join(gains), quote=True)}">{figure}</div>'
-    return f"<h2>What smoothing buys, by Klipper's measures</h2>\n{image}\n{sentences}\n{table}"
+    return f"<h2>What smoothing buys, by Klipper's measures</h2>\n{image}\n{table}\n{sentences}"
 
 
 def _texts(calibration: Calibration) -> str:
