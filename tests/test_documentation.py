@@ -26,8 +26,15 @@ MODULES = sorted(
 )
 
 
+CELL_SETTINGS = re.compile(r"\A(?:---\n.*?^---\n|(?::[\w-]+:.*\n)+)", flags=re.MULTILINE | re.DOTALL)
+"""What says how a cell is shown: not part of its code."""
+
+
 def blocks(page: Path, language: str) -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+    """The blocks of a language, in order; the cells of a page that is a notebook are Python too."""
+    fence = rf"(?:{language}|\{{code-cell\}} python)" if language == "python" else language
+    found = re.findall(rf"^```{fence}\n(.*?)^```$", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+    return [CELL_SETTINGS.sub("", block) for block in found]
 
 
 @pytest.mark.parametrize(
