@@ -17,16 +17,7 @@ LOADING = {
 }  # fmt: skip
 """Elements that load by themselves, and the attribute that says what; an <a> loads only when somebody follows it."""
 
-LINKS_THAT_LOAD = {
-    "stylesheet",
-    "icon",
-    "preload",
-    "prefetch",
-    "preconnect",
-    "dns-prefetch",
-    "manifest",
-    "modulepreload",
-}
+LINKS_THAT_LOAD = set("stylesheet icon preload prefetch preconnect dns-prefetch manifest modulepreload".split())
 
 OUTSIDE = re.compile(r"(?:[a-z]+:)?//", re.IGNORECASE)
 

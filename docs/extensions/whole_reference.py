@@ -1,4 +1,4 @@
-"""The reference: what a package's `__all__` holds, from the docstrings; a build that leaves out a public name is refused.
+"""The reference: what a package's `__all__` holds, from the docstrings; a build that leaves out a name is refused.
 
 ``.. room:: preshape.design`` is automodule with everything public, constants included: these are documented where they
 are defined, for only there is their docstring.
