@@ -19,6 +19,7 @@ extensions = [
     "whole_reference",
 ]
 myst_enable_extensions = ["colon_fence", "dollarmath"]
+myst_heading_anchors = 3
 exclude_patterns = ["_build", "extensions", "figures", "jupyter_execute", "theory/numbers"]
 
 # The gallery and whatever else has code cells is executed at every build: a page that fails stops the build.
@@ -27,6 +28,7 @@ nb_execution_raise_on_error = True
 nb_execution_show_tb = True
 nb_execution_timeout = 60
 nb_merge_streams = True
+nb_render_markdown_format = "myst"
 
 html_theme = "furo"
 html_title = "preshape"
