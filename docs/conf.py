@@ -26,7 +26,7 @@ exclude_patterns = ["_build", "extensions", "figures", "jupyter_execute", "theor
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 nb_execution_show_tb = True
-nb_execution_timeout = 60
+nb_execution_timeout = 180
 nb_merge_streams = True
 nb_render_markdown_format = "myst"
 
