@@ -1,10 +1,14 @@
 """Sphinx configuration: `make docs`. The pages load nothing from outside, so mathematics is MathML, made here."""
 
+import os
 import sys
 from importlib.metadata import version as installed
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "extensions"))
+
+# Linear algebra on small matrices must not start threads of its own: where others work too they slow it down tenfold.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 project = "preshape"
 author = "The preshape developers"
@@ -28,6 +32,7 @@ nb_execution_raise_on_error = True
 nb_execution_show_tb = True
 nb_execution_timeout = 180
 nb_merge_streams = True
+nb_output_stderr = "error"
 nb_render_markdown_format = "myst"
 
 html_theme = "furo"
