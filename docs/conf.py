@@ -1,14 +1,23 @@
 """Sphinx configuration: `make docs`. The pages load nothing from outside, so mathematics is MathML, made here."""
 
+import logging
 import os
 import sys
 from importlib.metadata import version as installed
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent / "extensions"))
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE / "extensions"))
 
 # Linear algebra on small matrices must not start threads of its own: where others work too they slow it down tenfold.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# Cells run with settings of their own, not with those of whoever builds; their kernels speak of errors only.
+os.environ["IPYTHONDIR"] = str(HERE / "_build" / "ipython")
+PROFILE = HERE / "_build" / "ipython" / "profile_default"
+PROFILE.mkdir(parents=True, exist_ok=True)
+(PROFILE / "ipython_kernel_config.py").write_text("get_config().IPKernelApp.log_level = 40\n")
+logging.getLogger("traitlets").setLevel(logging.WARNING)
 
 project = "preshape"
 author = "The preshape developers"
