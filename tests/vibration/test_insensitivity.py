@@ -124,6 +124,9 @@ def test_the_band_found_outwards_is_the_one_among_all_bands(seed: int) -> None:
     shaper, tolerance = design.FAMILIES[family](modes), float(rng.choice([0.01, 0.05, 0.1, 0.3]))
     for f, damping in modes:
         found = insensitivity(shaper, (f, damping), tolerance)
+        if residual_vibration(shaper, f, damping) > tolerance:  # an EI hump of 5 % where 1 % is allowed
+            assert found.value == 0.0
+            continue
         bands = tolerated_bands(shaper, tolerance, damping, 0.0, 4.0 * f)
         low, high = next((a, b) for a, b in bands if a <= f * (1.0 + 1e-8) and f <= b * (1.0 + 1e-8))
         assert found.low == pytest.approx(low, abs=1e-12 * f)
