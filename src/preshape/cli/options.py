@@ -11,9 +11,14 @@ from preshape.band import Band
 from preshape.errors import InputError
 from preshape.mode import Mode
 
-__all__ = ["BandOption", "ModeOption", "mode_option", "sample_rate_option", "tolerance_option"]
+__all__ = ["BandOption", "Decorator", "ModeOption", "mode_option", "sample_rate_option", "spelled", "tolerance_option"]
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+def spelled(name: str) -> str:
+    """An option's name as it is typed."""
+    return "--" + name.replace("_", "-")
 
 
 class ModeOption(click.ParamType[Mode]):
