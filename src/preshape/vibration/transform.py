@@ -26,14 +26,14 @@ def transform(
         From when times are counted [s]; the shaper's duration, so that nothing overflows where s has a positive real
         part.
     moment : int
-        0, or 1 for the derivative with respect to s.
+        0, or 1 and 2 for derivatives with respect to s.
 
     Returns
     -------
     ndarray of complex, shape (rate,)
     """
     times = shaper.times - origin
-    weights = shaper.amplitudes * times if moment else shaper.amplitudes
+    weights = shaper.amplitudes * times**moment if moment else shaper.amplitudes
     values = exponential_sum(weights, times, rates)
     return values + box_exponentials(_boxes(shaper, origin), rates, moment) if shaper.boxes else values
 
@@ -43,7 +43,7 @@ def transform_uniform(
 ) -> NDArray[np.complex128]:
     """The same at the `count` rates first, first + step, ..., with few exponentials for the impulses."""
     times = shaper.times - origin
-    weights = shaper.amplitudes * times if moment else shaper.amplitudes
+    weights = shaper.amplitudes * times**moment if moment else shaper.amplitudes
     values = exponential_sum_uniform(weights, times, first, step, count)
     if not shaper.boxes:
         return values
