@@ -1,0 +1,71 @@
+"""Fields as HTML: a label, the control, a place for what is wrong with it. Whatever comes from outside is escaped."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from html import escape
+
+__all__ = ["bare_number", "choice", "flag", "identity", "number", "trouble_place"]
+
+
+def identity(field: str) -> str:
+    """The id of a field's control."""
+    return "f-" + field.replace(".", "-")
+
+
+def trouble_place(field: str) -> str:
+    """Where the sentence about a field appears; it is read out when it does."""
+    return f'<p class="trouble" role="alert" id="{identity(field)}-trouble" data-error="{escape(field)}"></p>'
+
+
+def bare_number(field: str, value: str, label: str, step: str = "number") -> str:
+    """A number whose label is its column's head; `step` is "number", "ratio" or "whole": what an arrow key adds."""
+    return (
+        f'<input type="text" inputmode="decimal" autocomplete="off" id="{identity(field)}" data-field="{escape(field)}" '
+        f'data-step="{step}" aria-label="{escape(label)}" aria-describedby="{identity(field)}-trouble" '
+        f'value="{escape(value)}">{trouble_place(field)}'
+    )
+
+
+def number(field: str, value: str, label: str, *, hint: str = "", step: str = "number", none: str = "") -> str:
+    """A number with its label; `none` is what stands in the empty field."""
+    return _field(
+        field,
+        label,
+        f'<input type="text" inputmode="{"numeric" if step == "whole" else "decimal"}" autocomplete="off" '
+        f'data-step="{step}" placeholder="{escape(none)}" value="{escape(value)}"',
+        hint,
+    )
+
+
+def text(field: str, value: str, label: str, *, hint: str = "", none: str = "") -> str:
+    """A line of text with its label."""
+    control = f'<input type="text" autocomplete="off" placeholder="{escape(none)}" value="{escape(value)}"'
+    return _field(field, label, control, hint, tall=True)
+
+
+def flag(field: str, value: str, label: str, *, hint: str = "") -> str:
+    """Yes or no."""
+    return _field(field, label, f'<input type="checkbox"{" checked" * (value == "true")}', hint)
+
+
+def choice(
+    field: str, value: str, label: str, choices: Iterable[tuple[str, str]], *, hint: str = "", tall: bool = False
+) -> str:
+    """One of several, each with its value and the words for it."""
+    options = "".join(
+        f'<option value="{escape(one)}"{" selected" * (one == value)}>{escape(words)}</option>'
+        for one, words in choices
+    )
+    return _field(field, label, "<select", hint, inside=options + "</select>", tall=tall)
+
+
+def _field(field: str, label: str, control: str, hint: str, inside: str = "", tall: bool = False) -> str:
+    name = identity(field)
+    described = f"{name}-trouble" + (f" {name}-hint" if hint else "")
+    below = f'<p class="hint" id="{name}-hint">{escape(hint)}</p>' if hint else ""
+    return (
+        f'<div class="field{" tall" * tall}"><label for="{name}">{escape(label)}</label>'
+        f'{control} id="{name}" data-field="{escape(field)}" aria-describedby="{described}">{inside}'
+        f"{below}{trouble_place(field)}</div>"
+    )

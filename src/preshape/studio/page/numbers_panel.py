@@ -1,0 +1,89 @@
+"""The numbers of the designs, side by side."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from html import escape
+
+from preshape.studio.page.designs_panel import line_sample
+from preshape.workflow.workbench import INSENSITIVITY_AT, DesignView, Drawn, ModeView, View
+
+__all__ = ["numbers_panel", "percent", "proof"]
+
+
+def numbers_panel(view: View) -> str:
+    """A table: a column a design, a row a number."""
+    heads = "".join(
+        f'<th scope="col">{line_sample(design.asked.name)} {design.asked.name}: {escape(design.asked.family)}</th>'
+        for design in view.designs
+    )
+    rows: list[tuple[str, Callable[[Drawn], str]]] = [
+        ("Duration [s]", lambda drawn: f"{drawn.shaper.duration:.5g}"),
+        ("Impulses", _impulses),
+        ("Shortest there is", proof),
+    ]
+    for index, mode in enumerate(view.workbench.modes):
+        rows.append((f"Left at mode {index + 1}, {mode.frequency:.4g} Hz [%]", _left(index)))
+        rows.append((f"Stays within {100 * INSENSITIVITY_AT:g} % about mode {index + 1} [Hz]", _band(index)))
+    rows.append(("Move ends [s]", lambda drawn: f"{drawn.move.end_time:.5g}"))
+    rows.append(("Vibration after the move [m]", lambda drawn: f"{drawn.move.residual:.2g}"))
+    rows.append(("Peak deflection in the move [m]", lambda drawn: f"{drawn.move.peak_deflection:.3g}"))
+    body = "".join(
+        f'<tr><th scope="row">{escape(name)}</th>' + "".join(_cell(design, value) for design in view.designs) + "</tr>"
+        for name, value in rows
+    )
+    return (
+        '<h2 id="numbers-title">Numbers</h2><div class="scroll" tabindex="0" role="region" aria-labelledby="numbers-title">'
+        f'<table class="numbers" id="numbers" aria-labelledby="numbers-title"><thead><tr><th scope="col"><span class="for-reader">Number</span></th>{heads}</tr></thead>'
+        f"<tbody>{_troubles(view)}{body}</tbody></table></div>"
+    )
+
+
+def percent(part: float) -> str:
+    """A part as percent; rounding dust is zero."""
+    return "0" if part < 1e-9 else f"{100.0 * part:.3g}"
+
+
+def proof(drawn: Drawn) -> str:
+    """Whether a shorter one can exist, in a word or two."""
+    if drawn.proved:
+        return "proved"
+    return {"exact": "not asked", "feasible": "not proved"}.get(drawn.status, drawn.status)
+
+
+def _cell(design: DesignView, value: Callable[[Drawn], str]) -> str:
+    return f"<td>{escape(value(design.drawn)) if design.drawn is not None else '–'}</td>"
+
+
+def _troubles(view: View) -> str:
+    """A row of what is wrong, where something is."""
+    said = [design.trouble or (design.drawn.misfit if design.drawn else "") for design in view.designs]
+    if not any(said):
+        return ""
+    cells = "".join(f'<td><span class="trouble">{escape(_capital(one))}</span></td>' for one in said)
+    return f'<tr><th scope="row">What is wrong</th>{cells}</tr>'
+
+
+def _capital(sentence: str) -> str:
+    return sentence[:1].upper() + sentence[1:]
+
+
+def _impulses(drawn: Drawn) -> str:
+    boxes = len(drawn.shaper.boxes)
+    return f"{len(drawn.shaper)}" + (f" and {boxes} boxes" if boxes else "")
+
+
+def _left(index: int) -> Callable[[Drawn], str]:
+    return lambda drawn: percent(drawn.modes[index].residual)
+
+
+def _band(index: int) -> Callable[[Drawn], str]:
+    return lambda drawn: _edges(drawn.modes[index])
+
+
+def _edges(mode: ModeView) -> str:
+    if mode.high <= mode.low:
+        return "nowhere"
+    high = "beyond" if math.isinf(mode.high) else f"{mode.high:.4g}"
+    return f"{mode.low:.4g} to {high}"
