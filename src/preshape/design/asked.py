@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from typing import Any
 
 from preshape.band import Band
@@ -161,6 +162,7 @@ def _suits(wishes: dict[str, Any], family: str, what: str, spelled: Spelled) -> 
         raise InputError(f"{what} needs {spelled(min(missing))}: give a number.")
 
 
+@cache
 def _parameters(family: str, needed: bool = False) -> frozenset[str]:
     """What a family's function takes beside the modes, or only what it cannot do without."""
     parameters = inspect.signature(FAMILIES[family]).parameters

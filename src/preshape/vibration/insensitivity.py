@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from preshape.checks import tolerance_of
+from preshape.checks import positive, tolerance_of
 from preshape.errors import InputError
 from preshape.mode import ModesLike, one_mode
 from preshape.shaper import Shaper
@@ -88,7 +88,9 @@ def tolerated_bands(
     return list(zip(edges[::2], edges[1::2], strict=True))
 
 
-def insensitivity(shaper: Shaper, mode: ModesLike, tolerance: float = 0.05) -> Insensitivity:
+def insensitivity(
+    shaper: Shaper, mode: ModesLike, tolerance: float = 0.05, *, highest: float | None = None
+) -> Insensitivity:
     """The band of natural frequency around `mode` in which V <= `tolerance`, at the mode's damping ratio.
 
     Parameters
@@ -99,6 +101,9 @@ def insensitivity(shaper: Shaper, mode: ModesLike, tolerance: float = 0.05) -> I
         The centre; frequency [Hz].
     tolerance : float
         V allowed [-], between 0 and 1.
+    highest : float, optional
+        Where to stop looking [Hz], above the mode; a band still open there is infinite. 64 times the mode's frequency
+        unless given.
 
     Examples
     --------
@@ -112,8 +117,11 @@ def insensitivity(shaper: Shaper, mode: ModesLike, tolerance: float = 0.05) -> I
     if float(residual_vibration(shaper, f, centre.damping)) > tolerance * (1.0 + TOUCHING):
         return Insensitivity(f, f, 0.0)
     low = tolerated_until(shaper, tolerance, centre, 0.0)
-    high = tolerated_until(shaper, tolerance, centre, HIGHEST_RATIO * f)
-    if high >= HIGHEST_RATIO * f:
+    end = HIGHEST_RATIO * f if highest is None else positive("highest", highest, "Hz")
+    if end <= f:
+        raise InputError(f"highest is {end:g} Hz, which is not above the mode: give more than {f:g} Hz.")
+    high = tolerated_until(shaper, tolerance, centre, end)
+    if high >= end:
         return Insensitivity(low, math.inf, math.inf)
     return Insensitivity(low, high, (high - low) / f)
 

@@ -36,7 +36,7 @@ class ModeView:
         Residual vibration [-]: 0.05 is 5 % of the unshaped.
     low, high : float
         Band of natural frequencies [Hz] about the mode in which the residual stays within 5 %; both are the mode's own
-        frequency if it does not even there. `high` is infinite if the band has no upper end.
+        frequency if it does not even there. `high` is infinite if the band goes on beyond the view's frequencies.
     """
 
     residual: float
@@ -156,7 +156,7 @@ def view_of(workbench: Workbench) -> View:
                 status=shaper.design.status,
                 proved=_proved(shaper),
                 vibration=_curve(shaper, modes),
-                modes=tuple(_at_mode(shaper, mode) for mode in modes),
+                modes=tuple(_at_mode(shaper, mode, float(frequencies[-1])) for mode in modes),
                 zeros=_zeros(shaper, modes),
                 step=response(modes, plant, STEP, shaper, step_end),
                 move=response(modes, plant, move, shaper, move_end),
@@ -202,6 +202,6 @@ def _zeros(shaper: Shaper, modes: tuple[Mode, ...]) -> tuple[ShaperZero, ...]:
 
 
 @lru_cache(maxsize=4 * REMEMBERED)
-def _at_mode(shaper: Shaper, mode: Mode) -> ModeView:
-    band = insensitivity(shaper, mode, INSENSITIVITY_AT)
+def _at_mode(shaper: Shaper, mode: Mode, highest: float) -> ModeView:
+    band = insensitivity(shaper, mode, INSENSITIVITY_AT, highest=highest)
     return ModeView(float(residual_vibration(shaper, mode.frequency, mode.damping)), band.low, band.high)
