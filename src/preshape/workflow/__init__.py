@@ -3,6 +3,7 @@
 from preshape.workflow.analyze import Analysis, ModeAnalysis, analyze
 from preshape.workflow.calibrate import calibrate
 from preshape.workflow.compare import compare
+from preshape.workflow.design_report import design_report
 from preshape.workflow.design_within import design_within
 from preshape.workflow.executed import SpectrumLeft, executed_shaper, left_of_spectrum
 from preshape.workflow.gcode import ShapedGcode, shape_gcode
@@ -30,6 +31,7 @@ __all__ = [
     "analyze",
     "calibrate",
     "compare",
+    "design_report",
     "design_within",
     "executed_shaper",
     "identify_plant",
