@@ -131,7 +131,7 @@ export function recolour() {
 
 function looks(one, colour) {
   const [who, part] = one.id.split(".");
-  const paint = colour({ A: "a", B: "b", C: "c", D: "d", command: "soft", poles: "ink", limit: "trouble" }[who] ?? who);
+  const paint = colour({ A: "a", B: "b", C: "c", D: "d", command: "soft", poles: "ink", limit: "trouble", fitted: "a", model: "measured", optimum: "ink", families: "unshaped" }[who] ?? who);
   if (part === "area") return { areaStyle: { color: paint, opacity: 0.13 }, lineStyle: { width: 0 }, itemStyle: { color: paint } };
   return {
     itemStyle: { color: one.type === "scatter" && part === "hollow" ? "transparent" : paint, borderColor: paint, borderWidth: 1.6 },

@@ -1,0 +1,1 @@
+"""The studio: one page and an HTTP API, over the workbench."""

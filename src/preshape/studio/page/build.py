@@ -1,0 +1,140 @@
+"""The page itself: its route, its frame, and which event does what."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Awaitable, Callable
+from functools import partial
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+from preshape.errors import InputError
+from preshape.studio.page import frame
+from preshape.studio.page.deeds import DEEDS
+from preshape.studio.page.measurements import Measurements
+from preshape.studio.page.panels import PANELS, written
+from preshape.studio.page.plots import CHARTS, TRADE_OFF
+from preshape.studio.page.session import Session
+from preshape.workflow.workbench import Workbench, from_text, view_of
+
+if TYPE_CHECKING:
+    from fastapi import FastAPI
+    from nicegui import Client
+
+__all__ = ["STATIC", "build"]
+
+STATIC = "/page/static"
+"""Where the page's own scripts and styles are."""
+
+FIRST_PICTURE = 1.5
+"""Seconds that a new page waits for its first picture; a design that takes longer is drawn when it is there."""
+
+
+def build(app: FastAPI, *, first: Workbench | None = None, path: str = "/") -> None:
+    """Put the page on a server.
+
+    Parameters
+    ----------
+    app : FastAPI
+        NiceGUI's app, or the one it runs with.
+    first : Workbench, optional
+        What a page without a link shows.
+    path : str
+        Where the page is.
+    """
+    from fastapi.staticfiles import StaticFiles
+    from nicegui import ui
+
+    measurements = Measurements()
+    measurements.serve(app)
+    app.mount(STATIC, StaticFiles(directory=str(files("preshape.studio.page") / "static")))
+
+    @ui.page(path, title="preshape studio", favicon=frame.ICON, response_timeout=30.0)
+    async def page(client: Client, s: str = "", m: str = "") -> None:
+        trouble = ""
+        try:
+            workbench = from_text(s) if s else first or Workbench()
+        except InputError as error:
+            workbench, trouble = first or Workbench(), str(error)
+        session = Session(workbench, measurements, m[:64])
+        await _open(client, session, trouble)
+
+
+async def _open(client: Client, session: Session, trouble: str) -> None:
+    """Write the page, tell it its first picture, and listen to it."""
+    from nicegui import run, ui
+
+    drawing = asyncio.ensure_future(run.io_bound(view_of, session.workbench))
+    done, _ = await asyncio.wait([drawing], timeout=FIRST_PICTURE)
+    message: dict[str, Any] = {}
+    if done:
+        message = session.first(drawing.result())
+    charts = {}
+    ui.add_head_html(frame.head(STATIC))
+    with ui.element("div").classes("page"):
+        ui.html(frame.top(trouble), sanitize=False, tag="header").classes("top")
+        with ui.element("div").classes("bench"):
+            with ui.element("aside").classes("controls").props('aria-label="Modes and designs"'):
+                for name in frame.CONTROLS:
+                    _panel(session, name, tag="section")
+            with ui.element("main").classes("results").props('id="results" tabindex="-1"'):
+                with ui.element("div").classes("row"):
+                    _panel(session, "legend", classes="legend")
+                    ui.html(frame.STATUS, sanitize=False, tag="span").classes("status")
+                with ui.element("div").classes("charts"):
+                    for chart in (*CHARTS, TRADE_OFF):
+                        charts[chart.name] = _chart(chart.name, chart.title, chart.option)
+                _panel(session, "numbers", tag="section")
+                with ui.element("section").classes("export").props('aria-labelledby="export-title"'):
+                    _panel(session, "export")
+                    _panel(session, "preview")
+        ui.html(frame.SAYING, sanitize=False)
+    ui.add_body_html(frame.first(charts, message))
+    session.say = partial(_say, client)
+    for event, deed in DEEDS.items():
+        ui.on(f"studio_{event}", partial(_heard, session, deed))
+    if done:
+        asyncio.ensure_future(_later(session))
+    else:
+        session.become(session.workbench)
+
+
+def _panel(session: Session, name: str, *, tag: str = "div", classes: str = "") -> None:
+    from nicegui import ui
+
+    assert name in PANELS
+    ui.html(written(session, name), sanitize=False, tag=tag).props(f'id="panel-{name}"').classes(classes)
+
+
+def _chart(name: str, title: str, option: Any) -> int:
+    """A chart in its box; the number by which the browser finds it."""
+    from nicegui import ui
+
+    with ui.element("figure").classes("chart").props(f'id="chart-{name}"'):
+        ui.html(frame.chart_title(title), sanitize=False)
+        with ui.element("div").classes("drawing"):
+            made = ui.echart(json.loads(json.dumps(option)))
+            ui.html(frame.chart_over(name), sanitize=False)
+        ui.html(frame.chart_foot(title), sanitize=False)
+    return made.id
+
+
+def _say(client: Client, message: dict[str, Any]) -> None:
+    if client.is_deleted:
+        return
+    client.run_javascript(f"preshapeStudio.receive({json.dumps(message, allow_nan=False)})")
+
+
+async def _heard(session: Session, deed: Callable[..., Awaitable[None]], event: Any) -> None:
+    """An event of the page; what it carries is text."""
+    values = event.args if isinstance(event.args, list) else []
+    try:
+        await deed(session, *(str(value) for value in values))
+    except InputError as error:
+        session.say({"say": str(error)})
+
+
+async def _later(session: Session) -> None:
+    await session.show_export()
+    await session.draw_trade_off()

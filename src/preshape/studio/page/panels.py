@@ -1,0 +1,92 @@
+"""Which panels there are, and which of them must be written anew after a change."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from preshape.errors import InputError
+from preshape.mode import Mode
+from preshape.studio.page.designs_panel import design_shape, designs_panel, legend
+from preshape.studio.page.export_panel import ExportChoice, export_panel, export_preview, export_shape, packaged_for
+from preshape.studio.page.measurements import ADDRESS, MOST_BYTES
+from preshape.studio.page.modes_panel import drop_zone, modes_panel
+from preshape.studio.page.numbers_panel import numbers_panel
+from preshape.studio.page.trial_panel import trial_panel, trial_shape
+from preshape.workflow.workbench import View, Workbench
+
+if TYPE_CHECKING:
+    from preshape.studio.page.session import Session
+
+__all__ = ["PANELS", "changed", "preview", "shapes", "troubles", "with_modes", "written"]
+
+PANELS = ("drop", "modes", "designs", "trial", "legend", "numbers", "export", "preview")
+
+FIELDLESS = ("numbers",)
+"""Panels that hold no fields: they are written anew with every picture."""
+
+
+def written(session: Session, name: str) -> str:
+    """One panel as HTML."""
+    bench = session.workbench
+    if name == "drop":
+        return drop_zone(session.measured, ADDRESS, MOST_BYTES, session.drop_trouble)
+    if name == "modes":
+        return modes_panel(bench)
+    if name == "designs":
+        return designs_panel(bench, session.active)
+    if name == "trial":
+        return trial_panel(bench)
+    if name == "legend":
+        return legend(bench)
+    if name == "numbers":
+        return "" if session.view is None else numbers_panel(session.view)
+    if name == "export":
+        return export_panel(bench, session.export)
+    return ""
+
+
+def preview(workbench: Workbench, choice: ExportChoice) -> str:
+    """What the export gives, or why it gives nothing."""
+    try:
+        return export_preview(packaged_for(workbench, choice), "")
+    except InputError as error:
+        return export_preview(None, str(error))
+
+
+def shapes(session: Session) -> Mapping[str, object]:
+    """What each panel's form depends on; a change of a value alone does not change it."""
+    bench = session.workbench
+    return {
+        "drop": (session.measurement, session.drop_trouble),
+        "modes": len(bench.modes),
+        "designs": design_shape(bench, session.active),
+        "trial": trial_shape(bench),
+        "legend": [(design.name, design.family) for design in bench.designs],
+        "export": export_shape(bench, session.export),
+    }
+
+
+def changed(session: Session, old: Mapping[str, object], new: Mapping[str, object], redrawn: bool) -> dict[str, str]:
+    """The panels to write anew."""
+    return {
+        name: written(session, name)
+        for name in PANELS
+        if (redrawn and name in FIELDLESS) or (name in new and old.get(name) != new[name])
+    }
+
+
+def troubles(view: View | None) -> dict[str, str]:
+    """What is wrong with each design, for the place in its tab."""
+    if view is None:
+        return {}
+    return {
+        f"design.{design.asked.name}": design.trouble or (design.drawn.misfit if design.drawn else "")
+        for design in view.designs
+    }
+
+
+def with_modes(workbench: Workbench, modes: Sequence[Mode]) -> Workbench:
+    """With other modes; shares of the old ones have no meaning for them."""
+    return replace(workbench, modes=tuple(modes), plant=replace(workbench.plant, gains=()))
