@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from preshape.errors import InputError
 from preshape.studio.page import frame
+from preshape.studio.page.compute import VIEW_TIME, Compute
 from preshape.studio.page.deeds import DEEDS
 from preshape.studio.page.measurements import Measurements
 from preshape.studio.page.panels import PANELS, written
@@ -31,13 +32,15 @@ FIRST_PICTURE = 1.5
 """Seconds that a new page waits for its first picture; a design that takes longer is drawn when it is there."""
 
 
-def build(app: FastAPI, *, first: Workbench | None = None, path: str = "/") -> None:
+def build(app: FastAPI, compute: Compute, *, first: Workbench | None = None, path: str = "/") -> None:
     """Put the page on a server.
 
     Parameters
     ----------
     app : FastAPI
         NiceGUI's app, or the one it runs with.
+    compute : Compute
+        Who computes: :class:`preshape.studio.workers.Workers`.
     first : Workbench, optional
         What a page without a link shows.
     path : str
@@ -46,7 +49,7 @@ def build(app: FastAPI, *, first: Workbench | None = None, path: str = "/") -> N
     from fastapi.staticfiles import StaticFiles
     from nicegui import ui
 
-    measurements = Measurements()
+    measurements = Measurements(compute)
     measurements.serve(app)
     app.mount(STATIC, StaticFiles(directory=str(files("preshape.studio.page") / "static")))
 
@@ -57,18 +60,18 @@ def build(app: FastAPI, *, first: Workbench | None = None, path: str = "/") -> N
             workbench = from_text(s) if s else first or Workbench()
         except InputError as error:
             workbench, trouble = first or Workbench(), str(error)
-        session = Session(workbench, measurements, m[:64])
+        session = Session(workbench, compute, measurements, m[:64])
         await _open(client, session, trouble)
 
 
 async def _open(client: Client, session: Session, trouble: str) -> None:
     """Write the page, tell it its first picture, and listen to it."""
-    from nicegui import run, ui
+    from nicegui import ui
 
-    drawing = asyncio.ensure_future(run.io_bound(view_of, session.workbench))
+    drawing = asyncio.ensure_future(session.compute.run(VIEW_TIME, view_of, session.workbench))
     done, _ = await asyncio.wait([drawing], timeout=FIRST_PICTURE)
     message: dict[str, Any] = {}
-    if done:
+    if done and drawing.exception() is None:
         message = session.first(drawing.result())
     charts = {}
     ui.add_head_html(frame.head(STATIC))
@@ -94,7 +97,7 @@ async def _open(client: Client, session: Session, trouble: str) -> None:
     session.say = partial(_say, client)
     for event, deed in DEEDS.items():
         ui.on(f"studio_{event}", partial(_heard, session, deed))
-    if done:
+    if message:
         asyncio.ensure_future(_later(session))
     else:
         session.become(session.workbench)

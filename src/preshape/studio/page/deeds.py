@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import replace
 
 from preshape.errors import InputError
 from preshape.studio.page.edits import with_mode, with_more_designs, without_design, without_mode
-from preshape.studio.page.export_panel import packaged_for
+from preshape.studio.page.compute import EXPORT_TIME, REPORT_TIME
+from preshape.studio.page.export_panel import ExportChoice, packaged_for
 from preshape.studio.page.session import Session
-from preshape.workflow.workbench import shaper_named
+from preshape.workflow.workbench import Workbench, shaper_named
 
 __all__ = ["DEEDS"]
 
@@ -78,30 +80,35 @@ async def remove_design(session: Session) -> None:
 
 async def download(session: Session) -> None:
     """The export's file."""
-    from nicegui import run, ui
+    from nicegui import ui
 
-    package = await run.io_bound(packaged_for, session.workbench, session.export)
+    package = await session.compute.run(EXPORT_TIME, packaged_for, session.workbench, session.export)
     ui.download.content(package.content, package.name)
 
 
 async def report(session: Session, kind: str) -> None:
     """The report of the active design, as HTML or PDF."""
-    from nicegui import run, ui
-
-    from preshape.workflow.workbench import Workbench
-
-    def made(workbench: Workbench, name: str) -> bytes:
-        from preshape.report import as_html, as_pdf
-        from preshape.workflow import design_report
-
-        document = design_report(workbench.modes, shaper_named(workbench, name))
-        return as_pdf(document) if kind == "pdf" else as_html(document).encode()
+    from nicegui import ui
 
     if kind not in ("html", "pdf"):
         raise InputError(f"a report is html or pdf, not {kind[:10]!r}.")
     session.say({"say": "The report is being written …"})
-    content = await run.io_bound(made, session.workbench, session.active)
+    content = await session.compute.run(REPORT_TIME, _reported, session.workbench, session.active, session.export, kind)
     ui.download.content(content, f"preshape_report_{session.active}.{kind}")
+
+
+def _reported(workbench: Workbench, name: str, choice: ExportChoice, kind: str) -> bytes:
+    """The report as bytes, with the export that is in front."""
+    from preshape.report import as_html, as_pdf
+    from preshape.workflow import design_report
+
+    try:
+        package = packaged_for(workbench, replace(choice, design=name))
+        exports = [(f"{choice.target}: {file.name}", file.text) for file in package.files if file.text]
+    except InputError:
+        exports = []
+    document = design_report(workbench.modes, shaper_named(workbench, name), exports=exports)
+    return as_pdf(document) if kind == "pdf" else as_html(document).encode()
 
 
 DEEDS: Mapping[str, Deed] = {

@@ -35,6 +35,16 @@ FAMILY_WORDS = {
     "si": "SI: bounded over bands",
 }
 
+OPTION_WORDS = {
+    "dt": "Sample time [s]",
+    "duration": "Longest duration [s]",
+    "tolerance": "Vibration tolerated [-]",
+    "damping": "Damping ratio [-]",
+    "deflection_ratio": "Deflection ratio [-]",
+    "at_most": "Most impulses",
+    "fewest": "Fewest impulses",
+}
+
 DASHES = {"A": "", "B": "7 3", "C": "2 3", "D": "9 3 2 3", "unshaped": ""}
 
 
@@ -99,7 +109,9 @@ def _fields(workbench: Workbench, design: AskedDesign) -> str:
             )
         )
         if not design.bands:
-            shown.append(fields.number(f"{start}.band_width", texts[f"{start}.band_width"], "Width of a band / frequency"))
+            shown.append(
+                fields.number(f"{start}.band_width", texts[f"{start}.band_width"], "Width of a band / frequency")
+            )
     for name in sorted(taken, key=list(OPTIONS).index):
         shown.append(_option(f"{start}.option.{name}", texts[f"{start}.option.{name}"], name, name in needed))
     return "".join(shown)
@@ -107,7 +119,7 @@ def _fields(workbench: Workbench, design: AskedDesign) -> str:
 
 def _option(field: str, value: str, name: str, needed: bool) -> str:
     option = OPTIONS[name]
-    label, hint = name.replace("_", " ").capitalize(), option.summary
+    label, hint = OPTION_WORDS.get(name, name.replace("_", " ").capitalize()), option.summary
     if option.kind == "flag":
         return fields.flag(field, value, label, hint=hint)
     if option.kind == "choice":

@@ -76,7 +76,7 @@ def shown(value: float | str | bool | None) -> str:
         return ""
     if isinstance(value, bool):
         return str(value).lower()
-    return value if isinstance(value, str) else f"{value:.10g}"
+    return value if isinstance(value, str) else f"{value:.6g}"
 
 
 def with_mode(workbench: Workbench) -> Workbench:

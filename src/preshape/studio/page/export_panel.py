@@ -72,42 +72,57 @@ def packaged_for(workbench: Workbench, choice: ExportChoice) -> Package:
 
 def export_shape(workbench: Workbench, choice: ExportChoice) -> tuple[object, ...]:
     """What the panel's form depends on."""
-    return choice.target, choice.version, tuple((design.name, design.family) for design in workbench.designs), choice.design
+    return (
+        choice.target,
+        choice.version,
+        tuple((design.name, design.family) for design in workbench.designs),
+        choice.design,
+    )
 
 
 def export_panel(workbench: Workbench, choice: ExportChoice) -> str:
     """The fields; the preview is a panel of its own."""
     target = _target(choice.target)
     designs = [(design.name, f"{design.name}: {design.family}") for design in workbench.designs]
-    targets = [(one.name, f"{one.name}: {one.summary}") for one in export_targets()]
+    targets = [(one.name, one.name) for one in export_targets()]
     rows = [
         fields.choice("export.target", choice.target, "Target", targets, tall=True),
         fields.choice("export.design", choice.design, "Design", designs, tall=True),
     ]
     if len(target.versions) > 1:
-        rows.append(fields.choice("export.version", choice.version, "Version", [(one, one) for one in target.versions], tall=True))
+        rows.append(
+            fields.choice(
+                "export.version", choice.version, "Version", [(one, one) for one in target.versions], tall=True
+            )
+        )
     if target.sampled:
-        rows.append(fields.number("export.rate", shown(choice.rate), "Sample rate [Hz]"))
+        rows.append(fields.number("export.rate", shown(choice.rate), "Sample rate [Hz]", tall=True))
     if len(target.precisions) > 1:
-        rows.append(fields.choice("export.precision", choice.precision, "Numbers", [(one, one) for one in target.precisions]))
+        rows.append(
+            fields.choice(
+                "export.precision", choice.precision, "Numbers", [(one, one) for one in target.precisions], tall=True
+            )
+        )
     if target.axes:
         axes = [("", "all axes"), *((one, one) for one in target.axes)]
-        rows.append(fields.choice("export.axis", choice.axis, "Axis", axes))
+        rows.append(fields.choice("export.axis", choice.axis, "Axis", axes, tall=True))
     rows.append(fields.text("export.name", choice.name, "Name"))
     version = choice.version or target.versions[0] if target.versions else ""
     limits = dict(zip(target.versions, target.limits, strict=False)).get(version, "")
     return (
         '<h2 id="export-title">Export</h2>'
-        f'<div class="choices">{"".join(rows)}</div><p class="hint" id="export-limits">{escape(limits)}</p>'
+        f'<div class="choices">{"".join(rows)}</div><p class="hint" id="export-limits">{escape(target.summary)} It holds: {escape(limits)}.</p>'
     )
 
 
 def export_preview(package: Package | None, trouble: str) -> str:
     """The files as text, or why there are none."""
     if package is None:
-        return f'<p class="trouble banner" role="alert">{escape(trouble)}</p>'
+        return f'<p class="trouble banner" role="alert">{escape(fields.sentence(trouble))}</p>'
     notes = "".join(f'<p class="hint">{escape(note)}</p>' for note in package.notes)
-    shown_files = "".join(_file(index, file.name, file.text, len(file.content)) for index, file in enumerate(package.files))
+    shown_files = "".join(
+        _file(index, file.name, file.text, len(file.content)) for index, file in enumerate(package.files)
+    )
     steps = f'<p class="hint">{escape(" ".join(package.next_step))}</p>' if package.next_step else ""
     return (
         f'<div class="row"><button type="button" class="main" id="download" data-do="download">Download {escape(package.name)}</button></div>'
@@ -119,8 +134,16 @@ def _file(index: int, name: str, text: str, size: int) -> str:
     identity = f"export-text-{index}"
     if not text:
         return f'<p class="hint">{escape(name)}: {size} bytes, not text.</p>'
-    cut = f'<p class="hint">Cut after {LONGEST_PREVIEW} of {len(text)} characters; the download holds all.</p>' if len(text) > LONGEST_PREVIEW else ""
-    copy = f'<div class="row"><button type="button" id="copy-{index}" data-do="copy-text {identity}">Copy</button></div>' if not cut else ""
+    cut = (
+        f'<p class="hint">Cut after {LONGEST_PREVIEW} of {len(text)} characters; the download holds all.</p>'
+        if len(text) > LONGEST_PREVIEW
+        else ""
+    )
+    copy = (
+        f'<div class="row"><button type="button" id="copy-{index}" data-do="copy-text {identity}">Copy</button></div>'
+        if not cut
+        else ""
+    )
     return (
         f'<details id="export-file-{index}"{" open" if index == 0 else ""}><summary>{escape(name)}</summary>{copy}'
         f'<pre id="{identity}" tabindex="0" role="region" aria-label="Text of {escape(name)}">{escape(text[:LONGEST_PREVIEW])}</pre>{cut}</details>'
@@ -131,4 +154,6 @@ def _target(name: str) -> ExportTarget:
     for target in export_targets():
         if target.name == name:
             return target
-    raise InputError(f"target {name[:30]!r} is not known: choose one of {', '.join(one.name for one in export_targets())}.")
+    raise InputError(
+        f"target {name[:30]!r} is not known: choose one of {', '.join(one.name for one in export_targets())}."
+    )

@@ -5,12 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable
 from html import escape
 
-__all__ = ["bare_number", "choice", "flag", "identity", "number", "trouble_place"]
+__all__ = ["bare_number", "choice", "flag", "identity", "number", "sentence", "text", "trouble_place"]
 
 
 def identity(field: str) -> str:
     """The id of a field's control."""
     return "f-" + field.replace(".", "-")
+
+
+def sentence(text: str) -> str:
+    """What is wrong, as it stands alone: with a capital."""
+    return text[:1].upper() + text[1:]
 
 
 def trouble_place(field: str) -> str:
@@ -27,7 +32,9 @@ def bare_number(field: str, value: str, label: str, step: str = "number") -> str
     )
 
 
-def number(field: str, value: str, label: str, *, hint: str = "", step: str = "number", none: str = "") -> str:
+def number(
+    field: str, value: str, label: str, *, hint: str = "", step: str = "number", none: str = "", tall: bool = False
+) -> str:
     """A number with its label; `none` is what stands in the empty field."""
     return _field(
         field,
@@ -35,6 +42,7 @@ def number(field: str, value: str, label: str, *, hint: str = "", step: str = "n
         f'<input type="text" inputmode="{"numeric" if step == "whole" else "decimal"}" autocomplete="off" '
         f'data-step="{step}" placeholder="{escape(none)}" value="{escape(value)}"',
         hint,
+        tall=tall,
     )
 
 

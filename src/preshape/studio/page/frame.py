@@ -50,7 +50,11 @@ def top(trouble: str) -> str:
         f'<button type="button" id="{name}" data-do="{deed}" title="{escape(title)}">{escape(label)}</button>'
         for name, deed, label, title in buttons
     )
-    banner = f'<p class="trouble banner" role="alert">{escape(trouble)} The page shows its first state instead.</p>' if trouble else ""
+    banner = (
+        f'<p class="trouble banner" role="alert">{escape(trouble)} The page shows its first state instead.</p>'
+        if trouble
+        else ""
+    )
     return (
         '<a class="skip" href="#results">Skip to the charts</a><h1>preshape studio<small>commands that do not shake machines</small></h1>'
         f'<div class="row">{made}<button type="button" id="theme" aria-label="Theme: automatic">◐</button></div>{banner}'
@@ -87,4 +91,9 @@ def first(charts: Mapping[str, int], message: Mapping[str, Any]) -> str:
 
 def _in_script(value: object) -> str:
     """JSON that cannot end the script it stands in."""
-    return json.dumps(value, allow_nan=False).replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+    return (
+        json.dumps(value, allow_nan=False)
+        .replace("<", "\\u003c")
+        .replace("\u2028", "\\u2028")
+        .replace("\u2029", "\\u2029")
+    )

@@ -7,6 +7,8 @@ from collections import OrderedDict
 from typing import TYPE_CHECKING
 
 from preshape.errors import InputError
+from preshape.studio.page.compute import FILE_TIME, Compute
+from preshape.studio.page.fields import sentence
 from preshape.workflow.workbench import LARGEST_FILE, Measured, measured
 
 if TYPE_CHECKING:
@@ -27,13 +29,14 @@ MOST_KEPT = 16
 class Measurements:
     """The measurements that pages may ask for."""
 
-    def __init__(self) -> None:
+    def __init__(self, compute: Compute) -> None:
+        self._compute = compute
         self._kept: OrderedDict[str, Measured] = OrderedDict()
 
-    def read(self, content: bytes, name: str) -> str:
+    async def read(self, content: bytes, name: str) -> str:
         """Read a file; the key under which it is kept. InputError if it is not a measurement."""
         key = hashlib.sha256(name.encode() + b"\0" + content).hexdigest()[:16]
-        found = self.get(key) or measured(content, name, largest=MOST_BYTES)
+        found = self.get(key) or await self._compute.run(FILE_TIME, measured, content, name, largest=MOST_BYTES)
         self._kept[key] = found
         while len(self._kept) > MOST_KEPT:
             self._kept.popitem(last=False)
@@ -49,7 +52,6 @@ class Measurements:
         """Take files under :data:`ADDRESS`."""
         from fastapi import Request
         from fastapi.responses import JSONResponse
-        from nicegui import run
 
         async def take(request: Request, name: str = "") -> JSONResponse:
             parts, size = [], 0
@@ -60,9 +62,9 @@ class Measurements:
                     return JSONResponse({"trouble": told}, status_code=413)
                 parts.append(part)
             try:
-                key = await run.io_bound(self.read, b"".join(parts), name[:200])
+                key = await self.read(b"".join(parts), name[:200])
             except InputError as error:
-                return JSONResponse({"trouble": str(error)}, status_code=422)
+                return JSONResponse({"trouble": sentence(str(error))})
             return JSONResponse({"key": key})
 
         # Annotations are text here, and the framework looks them up among the module's names.

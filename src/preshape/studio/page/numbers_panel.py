@@ -7,9 +7,13 @@ from collections.abc import Callable
 from html import escape
 
 from preshape.studio.page.designs_panel import line_sample
+from preshape.studio.page.fields import sentence
 from preshape.workflow.workbench import INSENSITIVITY_AT, DesignView, Drawn, ModeView, View
 
 __all__ = ["numbers_panel", "percent", "proof"]
+
+DUST = 1e-9
+"""Parts below this are the rounding of the arithmetic."""
 
 
 def numbers_panel(view: View) -> str:
@@ -27,8 +31,9 @@ def numbers_panel(view: View) -> str:
         rows.append((f"Left at mode {index + 1}, {mode.frequency:.4g} Hz [%]", _left(index)))
         rows.append((f"Stays within {100 * INSENSITIVITY_AT:g} % about mode {index + 1} [Hz]", _band(index)))
     rows.append(("Move ends [s]", lambda drawn: f"{drawn.move.end_time:.5g}"))
-    rows.append(("Vibration after the move [m]", lambda drawn: f"{drawn.move.residual:.2g}"))
-    rows.append(("Peak deflection in the move [m]", lambda drawn: f"{drawn.move.peak_deflection:.3g}"))
+    dust = DUST * abs(view.workbench.move.distance)
+    rows.append(("Vibration after the move [mm]", lambda drawn: _millimetres(drawn.move.residual, dust)))
+    rows.append(("Peak deflection in the move [mm]", lambda drawn: _millimetres(drawn.move.peak_deflection, dust)))
     body = "".join(
         f'<tr><th scope="row">{escape(name)}</th>' + "".join(_cell(design, value) for design in view.designs) + "</tr>"
         for name, value in rows
@@ -42,7 +47,11 @@ def numbers_panel(view: View) -> str:
 
 def percent(part: float) -> str:
     """A part as percent; rounding dust is zero."""
-    return "0" if part < 1e-9 else f"{100.0 * part:.3g}"
+    return "0" if part < DUST else f"{100.0 * part:.3g}"
+
+
+def _millimetres(length: float, dust: float) -> str:
+    return "0" if length < dust else f"{1e3 * length:.3g}"
 
 
 def proof(drawn: Drawn) -> str:
@@ -61,12 +70,8 @@ def _troubles(view: View) -> str:
     said = [design.trouble or (design.drawn.misfit if design.drawn else "") for design in view.designs]
     if not any(said):
         return ""
-    cells = "".join(f'<td><span class="trouble">{escape(_capital(one))}</span></td>' for one in said)
+    cells = "".join(f'<td><span class="trouble">{escape(sentence(one))}</span></td>' for one in said)
     return f'<tr><th scope="row">What is wrong</th>{cells}</tr>'
-
-
-def _capital(sentence: str) -> str:
-    return sentence[:1].upper() + sentence[1:]
 
 
 def _impulses(drawn: Drawn) -> str:

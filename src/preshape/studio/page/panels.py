@@ -10,6 +10,7 @@ from preshape.errors import InputError
 from preshape.mode import Mode
 from preshape.studio.page.designs_panel import design_shape, designs_panel, legend
 from preshape.studio.page.export_panel import ExportChoice, export_panel, export_preview, export_shape, packaged_for
+from preshape.studio.page.fields import sentence
 from preshape.studio.page.measurements import ADDRESS, MOST_BYTES
 from preshape.studio.page.modes_panel import drop_zone, modes_panel
 from preshape.studio.page.numbers_panel import numbers_panel
@@ -82,7 +83,7 @@ def troubles(view: View | None) -> dict[str, str]:
     if view is None:
         return {}
     return {
-        f"design.{design.asked.name}": design.trouble or (design.drawn.misfit if design.drawn else "")
+        f"design.{design.asked.name}": sentence(design.trouble or (design.drawn.misfit if design.drawn else ""))
         for design in view.designs
     }
 

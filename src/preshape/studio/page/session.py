@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 import time
 from collections.abc import Callable
@@ -9,13 +10,24 @@ from typing import Any
 
 from preshape.errors import InputError
 from preshape.studio.page import panels
+from preshape.studio.page.compute import EXPORT_TIME, TRADE_OFF_PATIENCE, TRADE_OFF_TIME, VIEW_TIME, Compute, one_by_one
 from preshape.studio.page.edits import edited, fields_of
 from preshape.studio.page.export_panel import ExportChoice
+from preshape.studio.page.fields import sentence
 from preshape.studio.page.history import History
 from preshape.studio.page.measurements import Measurements
-from preshape.studio.page.plots import Picture
+from preshape.studio.page.plots import TRADE_OFF, Picture
 from preshape.studio.page.wire import Sent
-from preshape.workflow.workbench import Measured, View, Workbench, WorkbenchTradeOff, shaper_named, to_text, trade_off_of, view_of
+from preshape.workflow.workbench import (
+    Measured,
+    View,
+    Workbench,
+    WorkbenchTradeOff,
+    shaper_named,
+    to_text,
+    trade_off_of,
+    view_of,
+)
 
 __all__ = ["Session"]
 
@@ -24,6 +36,9 @@ QUIET = 0.7
 
 TOGETHER = 2.0
 """Edits of one field within so many seconds are one step of undo."""
+
+ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+"""Where axes end."""
 
 Message = dict[str, Any]
 
@@ -35,13 +50,18 @@ class Session:
     ----------
     workbench : Workbench
         What the link held, or the first one.
+    compute : Compute
+        Who computes.
     measurements : Measurements
         The server's.
     measurement : str
         Key of the measurement in the link; empty if there is none.
     """
 
-    def __init__(self, workbench: Workbench, measurements: Measurements, measurement: str = "") -> None:
+    def __init__(
+        self, workbench: Workbench, compute: Compute, measurements: Measurements, measurement: str = ""
+    ) -> None:
+        self.compute = compute
         self.history = History(workbench)
         self.measurements = measurements
         self.measurement = measurement
@@ -95,12 +115,12 @@ class Session:
             new = edited(self.workbench, field, text)
             if field.startswith("design.") and not field.endswith(".family"):
                 # A wish that no shaper can meet is refused like a wrong number: the last good design stays.
-                await _in_thread(shaper_named, new, field.split(".")[1])
+                await self.compute.run(VIEW_TIME, shaper_named, new, field.split(".")[1])
                 if self._last_edit != (field, now):
                     return None
                 new = edited(self.workbench, field, text)
         except InputError as error:
-            self.errors[field] = _sentence(str(error))
+            self.errors[field] = sentence(str(error))
             return self.say({"errors": self.errors})
         self.errors.pop(field, None)
         same = now - self._changed_at < TOGETHER or how == "held"
@@ -164,7 +184,9 @@ class Session:
         if self.export.design not in names:
             self.export = self.export.changed("design", names[0])
         known = fields_of(self.workbench)
-        self.errors = {field: said for field, said in self.errors.items() if field in known or field.startswith("export.")}
+        self.errors = {
+            field: said for field, said in self.errors.items() if field in known or field.startswith("export.")
+        }
         self._forced = forced
         if not self._drawing:
             self._drawing = True
@@ -175,8 +197,13 @@ class Session:
         try:
             while True:
                 wanted, since = self.workbench, self._changed_at
-                view = await _in_thread(view_of, wanted)
-                self.view = view
+                try:
+                    self.view = await self.compute.run(VIEW_TIME, view_of, wanted)
+                except InputError as error:
+                    self.say({"status": sentence(str(error)), "link": to_text(wanted)})
+                    if self._changed_at == since:
+                        return
+                    continue
                 if self._changed_at == since:
                     break
                 self._tell(forced=False, redrawn=True, behind=True)
@@ -189,19 +216,25 @@ class Session:
     async def show_export(self) -> None:
         """Write the export's preview anew; some targets take longer than a picture."""
         wanted = (self.workbench, self.export)
-        html = await _in_thread(panels.preview, *wanted)
+        html = await self.compute.run(EXPORT_TIME, panels.preview, *wanted)
         if wanted == (self.workbench, self.export):
             self.say({"html": {"preview": html}})
 
     async def draw_trade_off(self) -> None:
         """Draw what takes longer, once nothing has changed for a while."""
         since = self._changed_at
-        await _pause(QUIET)
+        await asyncio.sleep(QUIET)
         if self._changed_at != since:
             return
-        found = await _in_thread(
-            trade_off_of, self.workbench, clock=lambda: time.process_time() if self._changed_at == since else math.inf
-        )
+        async with one_by_one():
+            if self._changed_at != since:
+                return
+            try:
+                found = await self.compute.run(
+                    TRADE_OFF_TIME, trade_off_of, self.workbench, patience=TRADE_OFF_PATIENCE
+                )
+            except InputError as error:
+                return self.say({"charts": {TRADE_OFF.name: {"note": sentence(str(error))}}})
         if self._changed_at == since:
             self.trade_off = found
             self.say({"charts": self._sent.trade_off(self._picture())})
@@ -224,6 +257,7 @@ class Session:
         return {
             "link": to_text(self.workbench),
             "measurement": self.measurement,
+            "status": "",
             "can": {"undo": self.history.can_undo, "redo": self.history.can_redo},
             "errors": {**self.errors, **panels.troubles(self.view)},
         }
@@ -235,26 +269,11 @@ class Session:
     def _axis_end(self, held: bool) -> float:
         """End of the frequency axes: a round number above the modes, that stays while it still suits them."""
         highest = max(mode.frequency for mode in self.workbench.modes)
-        if held or 0.45 * self._top <= highest <= 0.85 * self._top:
+        # The curves of a view end at 1.6 times the highest mode: a round number that they reach.
+        if held or 0.63 * self._top <= highest <= 0.85 * self._top:
             return self._top
-        size = 10.0 ** math.floor(math.log10(1.5 * highest))
-        return next(size * step for step in (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0) if size * step >= 1.5 * highest)
-
-
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
-
-
-async def _in_thread(function: Callable[..., Any], *arguments: Any, **named: Any) -> Any:
-    from nicegui import run
-
-    return await run.io_bound(function, *arguments, **named)
-
-
-async def _pause(seconds: float) -> None:
-    import asyncio
-
-    await asyncio.sleep(seconds)
+        size = 10.0 ** math.floor(math.log10(1.6 * highest))
+        return max(size * step for step in ROUND if size * step <= 1.6 * highest)
 
 
 def _soon(work: Any) -> None:

@@ -25,7 +25,9 @@ def trial_panel(workbench: Workbench) -> str:
         return fields.number(field, texts[field], label, none=none, step=step)
 
     count = len(workbench.modes)
-    shares = "".join(number(f"plant.gain.{index}", f"Share of mode {index + 1} [-]", f"{1 / count:.3g}") for index in range(count))
+    shares = "".join(
+        number(f"plant.gain.{index}", f"Share of mode {index + 1} [-]", f"{1 / count:.3g}") for index in range(count)
+    )
     limits = ""
     if workbench.move.kind == "trapezoid":
         limits = number("move.speed", "Speed [m/s]") + number("move.acceleration", "Acceleration [m/s²]")

@@ -46,6 +46,7 @@ class Sent:
             "note": drawing.note,
             "trouble": drawing.trouble,
             "option": dict(drawing.option),
+            "names": {identity: list(names) for identity, names in drawing.names.items()},
         }
         for key, value in said.items():
             if self._said.get((name, key), "" if isinstance(value, str) else {}) != value:

@@ -11,7 +11,21 @@ from numpy.typing import NDArray
 
 from preshape.workflow.workbench import DESIGN_NAMES, DesignView, Measured, View, WorkbenchTradeOff
 
-__all__ = ["DESIGNS", "Axis", "Chart", "Drawing", "Picture", "Points", "frame", "gapped", "line", "listed", "scatter", "time_unit"]
+__all__ = [
+    "DESIGNS",
+    "Axis",
+    "Chart",
+    "Drawing",
+    "Picture",
+    "Points",
+    "frame",
+    "gapped",
+    "length_unit",
+    "line",
+    "listed",
+    "scatter",
+    "time_unit",
+]
 
 DESIGNS = DESIGN_NAMES
 
@@ -67,6 +81,8 @@ class Drawing:
         In the chart's place, and below it.
     option : mapping
         Settings of ECharts that go with these numbers, such as an axis' name.
+    names : mapping of str to sequence of str
+        By series, what each of its points is called, where they have names.
     """
 
     series: Mapping[str, Points | None]
@@ -75,6 +91,7 @@ class Drawing:
     note: str = ""
     trouble: str = ""
     option: Mapping[str, Any] = field(default_factory=dict)
+    names: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -151,6 +168,13 @@ def gapped(pieces: Sequence[Sequence[tuple[float, float]]]) -> Points:
 def time_unit(end: float) -> tuple[float, str]:
     """Factor and name of the unit in which times up to `end` [s] read well."""
     return (1e3, "ms") if end <= SHORT_TIME else (1.0, "s")
+
+
+def length_unit(largest: float) -> tuple[float, str]:
+    """Factor and name of the unit in which lengths up to `largest` [m] read well."""
+    if not 0.0 < largest < 0.5:
+        return 1.0, "m"
+    return (1e3, "mm") if largest >= 5e-4 else (1e6, "µm")
 
 
 def listed(parts: Sequence[str]) -> str:

@@ -36,7 +36,12 @@ def _drawing(picture: Picture) -> Drawing:
             series[f"{name}.stems"] = gapped(stems)
         if shaper.boxes:
             shown = [
-                [(factor * box.start, 0.0), (factor * box.start, box.mass), (factor * box.end, box.mass), (factor * box.end, 0.0)]
+                [
+                    (factor * box.start, 0.0),
+                    (factor * box.start, box.mass),
+                    (factor * box.end, box.mass),
+                    (factor * box.end, 0.0),
+                ]
                 for box in shaper.boxes
             ]
             series[f"{name}.area"] = gapped(shown)
@@ -63,11 +68,10 @@ IMPULSES = Chart(
             for series in (
                 line(f"{name}.area", f"design {name}", areaStyle={}, tooltip={"show": False}),
                 line(f"{name}.stems", f"design {name}", tooltip={"show": False}),
-                scatter(name, f"design {name}"),
+                scatter(name, f"design {name}", symbolSize=12 - 2 * DESIGNS.index(name)),
             )
         ],
         trigger="item",
     ),
     _drawing,
 )
-

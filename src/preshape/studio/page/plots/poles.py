@@ -44,7 +44,9 @@ POLES = Chart(
         [
             *(
                 scatter(f"{name}.hollow", f"zero of {name}", symbol=symbol, symbolSize=size)
-                for name, symbol, size in zip(DESIGNS, ("circle", "rect", "triangle", "diamond"), (16, 13, 12, 10), strict=True)
+                for name, symbol, size in zip(
+                    DESIGNS, ("circle", "rect", "triangle", "diamond"), (16, 13, 12, 10), strict=True
+                )
             ),
             scatter("poles", "pole", symbol="path://M0,0L10,10M10,0L0,10", symbolSize=9),
         ],

@@ -8,7 +8,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from preshape.studio.page.plots.chart import DESIGNS, Axis, Chart, Drawing, Picture, Points, frame, line, listed, time_unit
+from preshape.studio.page.plots.chart import (
+    DESIGNS,
+    Axis,
+    Chart,
+    Drawing,
+    Picture,
+    Points,
+    frame,
+    length_unit,
+    line,
+    listed,
+    time_unit,
+)
 from preshape.workflow.workbench import Drawn, Response
 
 __all__ = ["DEFLECTION", "MOVE", "STEP"]
@@ -20,13 +32,14 @@ def _curves(
     unshaped: Response,
     of: Callable[[Drawn], Response],
     value: Callable[[Response], NDArray[np.float64]],
+    length: float = 1.0,
 ) -> tuple[dict[str, Points | None], str]:
     factor, unit = time_unit(float(times[-1]))
     scaled = factor * times
-    series: dict[str, Points | None] = {"unshaped": (scaled, value(unshaped))}
+    series: dict[str, Points | None] = {"unshaped": (scaled, length * value(unshaped))}
     for name in DESIGNS:
         drawn = picture.designs[name].drawn if name in picture.designs else None
-        series[name] = None if drawn is None else (scaled, value(of(drawn)))
+        series[name] = None if drawn is None else (scaled, length * value(of(drawn)))
     return series, unit
 
 
@@ -50,18 +63,24 @@ def _ends(picture: Picture, of: Callable[[Drawn], Response], unshaped: Response,
     """When each command ends and what vibrates on."""
     rows = [("unshaped", unshaped)]
     rows += [(f"design {name}", of(one.drawn)) for name, one in picture.designs.items() if one.drawn is not None]
-    return listed([f"{who} ends at {one.end_time:.4g} seconds and vibrates on by at most {one.residual:.2g} {unit}" for who, one in rows])
+    return listed(
+        [
+            f"{who} ends at {one.end_time:.4g} seconds and vibrates on by at most {one.residual:.2g} {unit}"
+            for who, one in rows
+        ]
+    )
 
 
 def _move(picture: Picture) -> Drawing:
     view = picture.view
-    series, unit = _curves(picture, view.move_times, view.unshaped_move, _move_of, _position)
-    series["command"] = series["unshaped"][0], view.unshaped_move.command  # type: ignore[index]
+    length, length_name = length_unit(abs(view.workbench.move.distance))
+    series, unit = _curves(picture, view.move_times, view.unshaped_move, _move_of, _position, length)
+    series["command"] = time_unit(float(view.move_times[-1]))[0] * view.move_times, length * view.unshaped_move.command
     return Drawing(
         series,
         label=f"Response to the move, position over time: {_ends(picture, _move_of, view.unshaped_move, 'metres')}",
         detail="thin dashes: command",
-        option={"xAxis": [{"name": f"time [{unit}]"}]},
+        option={"xAxis": [{"name": f"time [{unit}]"}], "yAxis": [{"name": f"position [{length_name}]"}]},
     )
 
 
@@ -77,7 +96,8 @@ def _step(picture: Picture) -> Drawing:
 
 def _deflections(picture: Picture) -> Drawing:
     view = picture.view
-    series, unit = _curves(picture, view.move_times, view.unshaped_move, _move_of, _deflection)
+    length, length_name = length_unit(float(np.abs(view.unshaped_move.deflection).max()))
+    series, unit = _curves(picture, view.move_times, view.unshaped_move, _move_of, _deflection, length)
     rows = [("unshaped", view.unshaped_move)]
     rows += [(f"design {name}", one.drawn.move) for name, one in picture.designs.items() if one.drawn is not None]
     clauses = [f"{who} at most {one.peak_deflection:.3g} metres" for who, one in rows]
@@ -85,13 +105,16 @@ def _deflections(picture: Picture) -> Drawing:
         series,
         label=f"Deflection during the move, over time: {listed(clauses)}",
         detail="from the command",
-        option={"xAxis": [{"name": f"time [{unit}]"}]},
+        option={"xAxis": [{"name": f"time [{unit}]"}], "yAxis": [{"name": f"deflection [{length_name}]"}]},
     )
 
 
 def _frame(y: str, *extra: dict[str, Any]) -> Mapping[str, Any]:
     return frame(
-        Axis("time [s]", {"min": 0, "max": "dataMax", "axisLabel": {"fontSize": 11, "hideOverlap": True, "showMaxLabel": False}}),
+        Axis(
+            "time [s]",
+            {"min": 0, "max": "dataMax", "axisLabel": {"fontSize": 11, "hideOverlap": True, "showMaxLabel": False}},
+        ),
         Axis(y),
         [*extra, line("unshaped", "unshaped"), *(line(name, f"design {name}") for name in DESIGNS)],
     )

@@ -26,7 +26,9 @@ def _drawing(picture: Picture) -> Drawing:
             clauses.append(f"design {name} leaves {left} at the modes")
     ends = np.array([0.0, picture.top])
     series["limit"] = ends, np.full(2, 100.0 * INSENSITIVITY_AT)
-    series["command.modes"] = gapped([[(mode.frequency, 0.0), (mode.frequency, HIGHEST_SHOWN)] for mode in view.workbench.modes])
+    series["command.modes"] = gapped(
+        [[(mode.frequency, 0.0), (mode.frequency, HIGHEST_SHOWN)] for mode in view.workbench.modes]
+    )
     return Drawing(
         series,
         label=f"Sensitivity curves, vibration left in percent of the unshaped, over frequency: {listed(clauses)}",

@@ -30,10 +30,10 @@ def _drawing(picture: Picture) -> Drawing:
     series: dict[str, Points | None] = {"measured": None, "fitted": None, "model": None}
     if measured is None:
         series["model"] = _modelled(picture)
-        name, detail, unit = "power of the modes [-]", "drop a measurement to see it here", "model"
+        name, detail, unit = "power of the modes [-]", "model", "model"
         highest = 1.0
     else:
-        name = f"density [{measured.unit}]" if measured.unit else "density"
+        name = f"density [{measured.unit.replace('^2', '²')}]" if measured.unit else "density"
         detail, unit = measured.name, "measured"
         shown = (measured.frequencies > 0.0) & (measured.frequencies <= picture.top)
         density = measured.density[shown]
@@ -43,24 +43,39 @@ def _drawing(picture: Picture) -> Drawing:
         series["measured"] = x, np.where(density > floor, density, floor)
         fitted = measured.fitted[shown]
         series["fitted"] = x, np.where(fitted > floor, fitted, np.nan)
-    at = [f"mode {index} at {mode.frequency:.4g} hertz, damping ratio {mode.damping:.3g}" for index, mode in enumerate(modes, 1)]
+    at = [
+        f"mode {index} at {mode.frequency:.4g} hertz, damping ratio {mode.damping:.3g}"
+        for index, mode in enumerate(modes, 1)
+    ]
     return Drawing(
         series,
         label=f"Spectrum, {unit}: {listed(at)}",
         detail=detail,
         option={
             "xAxis": [{"max": picture.top}],
-            "yAxis": [{"name": name, "min": 10.0 ** np.floor(np.log10(DEPTH * highest)), "max": 10.0 ** np.ceil(np.log10(highest))}],
+            "yAxis": [
+                {
+                    "name": name,
+                    "min": 10.0 ** np.floor(np.log10(DEPTH * highest)),
+                    "max": 10.0 ** np.ceil(np.log10(highest)),
+                }
+            ],
         },
     )
 
 
 SPECTRUM = Chart(
     "spectrum",
-    "Modes on the spectrum",
+    "Spectrum and modes",
     frame(
         Axis("frequency [Hz]", {"min": 0}),
-        Axis("power of the modes [-]", {"type": "log", "axisLabel": {"fontSize": 11, ":formatter": "v => v.toExponential(0).replace('e+0', 'e0')"}}),
+        Axis(
+            "power of the modes [-]",
+            {
+                "type": "log",
+                "axisLabel": {"fontSize": 11, ":formatter": "v => v.toExponential(0).replace('e+0', 'e0')"},
+            },
+        ),
         [line("measured", "measured"), line("fitted", "fitted modes"), line("model", "modes alone")],
     ),
     _drawing,

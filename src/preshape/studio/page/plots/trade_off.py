@@ -6,16 +6,34 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from preshape.studio.page.plots.chart import DESIGNS, Axis, Chart, Drawing, Picture, Points, frame, line, listed, scatter
+from preshape.studio.page.plots.chart import (
+    DESIGNS,
+    Axis,
+    Chart,
+    Drawing,
+    Picture,
+    Points,
+    frame,
+    line,
+    listed,
+    scatter,
+)
 from preshape.workflow.workbench import TradePoint
 
 __all__ = ["TRADE_OFF"]
+
+LABEL = {"show": True, "formatter": "{b}", "position": "right", "fontSize": 10}
+
+LEAST_SHOWN = 0.01
+"""[%]; what leaves less is drawn here."""
 
 
 def _points(found: Sequence[TradePoint]) -> Points | None:
     if not found:
         return None
-    return np.array([1e3 * point.duration for point in found]), np.array([100.0 * point.left for point in found])
+    return np.array([1e3 * point.duration for point in found]), np.array(
+        [max(100.0 * point.left, LEAST_SHOWN) for point in found]
+    )
 
 
 def _drawing(picture: Picture) -> Drawing:
@@ -36,6 +54,10 @@ def _drawing(picture: Picture) -> Drawing:
         label=f"Trade-off of duration and vibration left at 5 percent frequency error: {listed(clauses)}",
         detail="grey: families; line: shortest there is",
         trouble=" ".join(found.remarks[-1:]),
+        names={
+            "families": [point.name for point in found.families],
+            "optimum": [point.name for point in found.optimum],
+        },
     )
 
 
@@ -44,10 +66,12 @@ TRADE_OFF = Chart(
     "Trade-off",
     frame(
         Axis("duration [ms]", {"min": 0}),
-        Axis("left at ±5 % [%]", {"min": 0}),
+        Axis("left at ±5 % [%]", {"type": "log", "min": LEAST_SHOWN, "max": 100}),
         [
             line("optimum", "shortest there is", symbol="circle", symbolSize=5),
-            scatter("families", "family", symbolSize=6, symbol="circle"),
+            scatter(
+                "families", "family", symbolSize=6, symbol="circle", label=LABEL, labelLayout={"hideOverlap": True}
+            ),
             *(scatter(name, f"design {name}", symbolSize=12) for name in DESIGNS),
         ],
         trigger="item",

@@ -6,9 +6,11 @@ const listeners = new Map();
 
 const DASHES = { A: "solid", B: [7, 3], C: [2, 3], D: [9, 3, 2, 3] };
 const SYMBOLS = { A: "circle", B: "rect", C: "triangle", D: "diamond" };
-const WIDTHS = { unshaped: 1.2, measured: 1.2, command: 1, limit: 1 };
+const WIDTHS = { unshaped: 1.2, measured: 2, fitted: 1.4, command: 1, limit: 1 };
 
 export const chartNamed = (name) => known.get(name)?.chart;
+
+export const drawnOnce = (name) => known.get(name)?.draws > 0;
 
 export function onDrawn(name, callback) {
   listeners.set(name, callback);
@@ -68,7 +70,8 @@ export function drawCharts(charts) {
     if (!one) continue;
     tell(one, message);
     const series = Object.entries(message.series ?? {}).map(([id, packed]) => {
-      const data = packed ? points(packed) : [];
+      const named = message.names?.[id];
+      const data = (packed ? points(packed) : []).map((value, index) => (named ? { value, name: named[index] } : value));
       one.data.set(id, data);
       return { id, data };
     });
@@ -131,7 +134,8 @@ export function recolour() {
 
 function looks(one, colour) {
   const [who, part] = one.id.split(".");
-  const paint = colour({ A: "a", B: "b", C: "c", D: "d", command: "soft", poles: "ink", limit: "trouble", fitted: "a", model: "measured", optimum: "ink", families: "unshaped" }[who] ?? who);
+  const paint = colour({ A: "a", B: "b", C: "c", D: "d", command: "soft", poles: "ink", limit: "soft", fitted: "a", model: "measured", optimum: "ink", families: "unshaped" }[who] ?? who);
+  if (who === "families") return { itemStyle: { color: paint }, label: { color: colour("soft") } };
   if (part === "area") return { areaStyle: { color: paint, opacity: 0.13 }, lineStyle: { width: 0 }, itemStyle: { color: paint } };
   return {
     itemStyle: { color: one.type === "scatter" && part === "hollow" ? "transparent" : paint, borderColor: paint, borderWidth: 1.6 },
@@ -140,7 +144,7 @@ function looks(one, colour) {
           lineStyle: {
             color: paint,
             width: WIDTHS[who] ?? 1.8,
-            type: part === "stems" ? "solid" : who === "command" || who === "limit" ? [4, 3] : (DASHES[who] ?? "solid"),
+            type: part === "stems" ? "solid" : who === "command" || who === "limit" || who === "fitted" ? [4, 3] : (DASHES[who] ?? "solid"),
           },
         }
       : { symbol: one.symbol && one.symbol !== "circle" ? one.symbol : (SYMBOLS[who] ?? one.symbol) }),

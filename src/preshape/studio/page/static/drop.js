@@ -23,7 +23,9 @@ function onDrag(event) {
 }
 
 export function showDrop(note, trouble) {
-  document.getElementById("drop-note").textContent = note;
+  const place = document.getElementById("drop-note");
+  place.dataset.before ??= place.textContent;
+  place.textContent = note || place.dataset.before;
   document.getElementById("drop-trouble").textContent = trouble;
 }
 
@@ -42,7 +44,7 @@ async function carry(files) {
     address.searchParams.set("name", file.name);
     const answer = await fetch(address, { method: "POST", body: file, headers: { "Content-Type": "application/octet-stream" } });
     const told = await answer.json();
-    if (!answer.ok) return showDrop("", told.trouble ?? told.detail ?? `The server refused the file (${answer.status}).`);
+    if (!answer.ok || told.trouble) return showDrop("", told.trouble ?? told.detail ?? `The server refused the file (${answer.status}).`);
     showDrop("", "");
     send("measured", told.key);
   } catch {

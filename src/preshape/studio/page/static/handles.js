@@ -1,5 +1,5 @@
 // A mode's frequency as a slider over the spectrum: dragged by pointer, moved by arrow keys, read by a screen reader.
-import { chartNamed, onDrawn } from "./charts.js";
+import { chartNamed, drawnOnce, onDrawn } from "./charts.js";
 import { moved } from "./fields.js";
 import { send } from "./studio.js";
 
@@ -25,6 +25,7 @@ function made(index) {
   handle.setAttribute("role", "slider");
   handle.setAttribute("aria-label", `Frequency of mode ${index + 1}`);
   handle.setAttribute("aria-orientation", "horizontal");
+  handle.hidden = true;
   handle.innerHTML = `<i aria-hidden="true">${index + 1}</i>`;
   handle.addEventListener("keydown", (event) => onKey(event, index));
   handle.addEventListener("pointerdown", (event) => onHold(event, index));
@@ -34,7 +35,7 @@ function made(index) {
 // The axis stays while a handle is held: it would run away from the pointer otherwise.
 function settle() {
   const chart = chartNamed("spectrum");
-  if (!chart) return;
+  if (!chart || !drawnOnce("spectrum")) return;
   const axis = chart.getModel().getComponent("xAxis", 0).axis.scale.getExtent();
   for (const handle of handles) {
     const frequency = Number(handle.dataset.frequency);

@@ -118,6 +118,7 @@ function start() {
   startFields(send);
   startDrops(send);
   startLooks();
+  if (window.innerWidth <= 820) document.getElementById("trial-plant").removeAttribute("open");
   startCharts(JSON.parse(document.getElementById("first-charts").textContent), () => {
     studio.receive = receive;
     for (const message of studio.queue.splice(0)) receive(message);

@@ -19,7 +19,7 @@ export function showTable(one) {
   }
   const body = table.createTBody();
   for (const series of shown) {
-    const all = one.data.get(series.id).filter(([, y]) => y !== "-");
+    const all = one.data.get(series.id).map((point) => point.value ?? point).filter(([, y]) => y !== "-");
     const every = Math.max(1, Math.ceil(all.length / MOST_ROWS));
     all.forEach(([x, y], index) => {
       if (index % every && index !== all.length - 1) return;
