@@ -18,6 +18,7 @@ COMMANDS = {
     "gcode": "Shape the moves of a G-code program, for a controller that cannot.",
     "stream": "Shape standard input into standard output, sample by sample.",
     "export": "Write a shaper for somebody else's controller: C, LinuxCNC ...",
+    "studio": "Choose a shaper with your eyes, on a page in your browser.",
     "compare": "Compare every kind of command for one move of a flexible machine.",
     "move": "Move a flexible body from rest to rest, within a deflection.",
     "simulate": "Simulate your machine under a command, unshaped beside shaped.",

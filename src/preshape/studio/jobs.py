@@ -63,10 +63,12 @@ def export_job(chosen: Workbench | Shaper, target: str, settings: dict[str, Any]
 
 def report_job(modes: Modes, chosen: Workbench | Shaper, remarks: list[str], kind: str) -> bytes:
     """The report of a shaper as HTML or PDF."""
+    from preshape.export import paste_ready
     from preshape.report import as_html, as_pdf
     from preshape.workflow import design_report
 
-    document = design_report(modes, _shaper(chosen), remarks=remarks)
+    shaper = _shaper(chosen)
+    document = design_report(modes, shaper, exports=paste_ready(shaper), remarks=remarks)
     return as_pdf(document) if kind == "pdf" else as_html(document).encode()
 
 

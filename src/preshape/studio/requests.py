@@ -11,7 +11,6 @@ from preshape.errors import InputError
 from preshape.mode import Mode, Modes
 from preshape.shaper import Shaper
 from preshape.workflow.workbench import MOST_MODES, AskedDesign, Workbench, from_plain
-from preshape.workflow.workbench.link import SCHEMA
 from preshape.workflow.workbench.solve import MOST_IMPULSES
 from preshape.workflow.workbench.state import MOST_BANDS
 
@@ -102,10 +101,10 @@ class ControllerModel(_Strict):
 class WorkbenchModel(_Strict):
     """A workbench, schema preshape/workbench/1: what a link of the studio holds."""
 
-    schema_: Literal["preshape/workbench/1"] = Field(SCHEMA, alias="schema")
+    schema_: Literal["preshape/workbench/1"] = Field("preshape/workbench/1", alias="schema")
     modes: ModeList
     designs: list[NamedDesign] = Field([], max_length=4)
-    plant: PlantModel = PlantModel()
+    plant: PlantModel = PlantModel()  # type: ignore[call-arg]
     move: MoveModel = MoveModel()  # type: ignore[call-arg]
     controller: ControllerModel = ControllerModel()  # type: ignore[call-arg]
 

@@ -26,7 +26,7 @@ TO_LEAVE = 2.0
 """Time [s] that a process has to end by itself."""
 
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-"""The matrices here are small: with several threads linear algebra is slower, the more so the more clients there are."""
+"""The matrices here are small: with several threads linear algebra is slower, the more so with many clients."""
 
 
 class Overdue(Exception):
