@@ -140,7 +140,7 @@ def test_what_is_saved_is_complete_and_readable(gantry: Calibration, tmp_path: P
         assert outside not in page.replace("http://www.w3.org", "").replace("http://purl.org", "").replace(
             "http://creativecommons.org", "").replace("https://matplotlib.org", "")  # fmt: skip
     picks = ["improved.json", "performance.json", "quality.json"]
-    expected = ["calibration.svg", "report.html", "settings", "shaper.json", "trade_off.svg", *picks]
+    expected = ["calibration.svg", "report.html", "report.pdf", "settings", "shaper.json", "trade_off.svg", *picks]
     assert sorted(os.listdir(tmp_path / "new" / "folder")) == sorted(expected)
     assert gantry.trade_off is not None
     assert [Shaper.load(path) for path in saved.picks] == [pick.shaper for pick in gantry.trade_off.picks]

@@ -10,7 +10,7 @@ import click
 
 from preshape import design
 from preshape.band import Band
-from preshape.cli.options import BandOption, Decorator, mode_option, spelled
+from preshape.cli.options import BandOption, Decorator, mode_option, spelled, typed
 from preshape.mode import Mode
 
 __all__ = ["command"]
@@ -47,8 +47,19 @@ def _wish(option: design.Option) -> Decorator:
 @click.option(
     "--json", "json_file", metavar="FILE|-", help="Write the shaper as JSON; - for standard output and nothing else."
 )
+@click.option(
+    "--report", type=click.Path(path_type=Path), metavar="FILE", help="Write a report: .html, or .pdf with Typst."
+)
+@click.pass_context
 def command(
-    family: str, modes: tuple[Mode, ...], bands: tuple[Band, ...], json_file: str | None, **wishes: Any
+    context: click.Context,
+    /,
+    family: str,
+    modes: tuple[Mode, ...],
+    bands: tuple[Band, ...],
+    json_file: str | None,
+    report: Path | None,
+    **wishes: Any,
 ) -> None:
     """Design a shaper for known modes, or for bands of frequencies.
 
@@ -59,10 +70,22 @@ def command(
     preshape design --family si --band 0.9:1.1 --band 2.7:3.3:0.01:0.03 --tolerance 0.05
     """
     from preshape.cli.screens import shaper_screen
+    from preshape.files import write_atomically
+    from preshape.report import DesignJob, report_bytes, report_format
     from preshape.shaper_file import to_json
+    from preshape.workflow import asked_design_report, designed
 
-    asked = {name: value for name, value in wishes.items() if value is not None}
-    shaper = design.designed(family, modes, bands, asked, spelled=spelled)
+    job = DesignJob(
+        family=family,
+        modes=tuple((mode.frequency, mode.damping) for mode in modes),
+        bands=tuple((band.low, band.high, band.least_damping, band.highest_damping) for band in bands),
+        **wishes,
+    )
+    kind = None if report is None else report_format(report)
+    shaper = designed(job)
+    sheets = None if kind is None else report_bytes(asked_design_report(job, shaper, command_line=typed(context)), kind)
+    if report is not None and sheets is not None:
+        write_atomically(report, sheets)
     if json_file == "-":
         click.echo(to_json(shaper.to_dict()), nl=False)
         return
@@ -70,3 +93,5 @@ def command(
     shaper_screen(shaper)
     if saved is not None:
         click.echo(f"Shaper: {saved}")
+    if report is not None:
+        click.echo(f"Report: {report}")

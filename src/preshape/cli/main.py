@@ -18,10 +18,12 @@ COMMANDS = {
     "gcode": "Shape the moves of a G-code program, for a controller that cannot.",
     "stream": "Shape standard input into standard output, sample by sample.",
     "export": "Write a shaper for somebody else's controller: C, LinuxCNC ...",
+    "studio": "Choose a shaper with your eyes, on a page in your browser.",
     "compare": "Compare every kind of command for one move of a flexible machine.",
     "move": "Move a flexible body from rest to rest, within a deflection.",
     "simulate": "Simulate your machine under a command, unshaped beside shaped.",
     "verify": "Compare recordings of a move without and with the shaper, or write the moves.",
+    "rerun": "Run again what a report says it was made from, and compare.",
     "reproduce": "Recompute what the papers print, with verdicts and figures.",
 }
 """Each in a module of its own, imported when it is called: help stays fast."""
@@ -72,7 +74,8 @@ def main(arguments: list[str] | None = None) -> None:
     from preshape.errors import InputError
 
     try:
-        code = preshape.main(args=arguments, standalone_mode=False)
+        given = sys.argv[1:] if arguments is None else arguments
+        code = preshape.main(args=given, standalone_mode=False, obj=given)
     except click.UsageError as error:
         error.show()
         code = 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable
 from typing import Any
 
@@ -11,7 +12,16 @@ from preshape.band import Band
 from preshape.errors import InputError
 from preshape.mode import Mode
 
-__all__ = ["BandOption", "Decorator", "ModeOption", "mode_option", "sample_rate_option", "spelled", "tolerance_option"]
+__all__ = [
+    "BandOption",
+    "Decorator",
+    "ModeOption",
+    "mode_option",
+    "sample_rate_option",
+    "spelled",
+    "tolerance_option",
+    "typed",
+]
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -82,3 +92,8 @@ def sample_rate_option() -> Decorator:
     return click.option(
         "--sample-rate", type=float, metavar="HZ", help="Samples per second, for a table without a time column."
     )
+
+
+def typed(context: click.Context) -> str:
+    """The command line as it was typed, so that a shell would take it again."""
+    return shlex.join(["preshape", *context.find_root().obj])

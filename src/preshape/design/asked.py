@@ -11,7 +11,7 @@ from preshape.band import Band
 from preshape.design.antiperiod import antiperiod
 from preshape.design.band import ei_for_band
 from preshape.design.convolved import convolved
-from preshape.design.families import FAMILIES
+from preshape.design.families import FAMILIES, OTHER_FAMILIES
 from preshape.design.mesh import mesh
 from preshape.design.on_grid import on_grid
 from preshape.design.specified_insensitivity import specified_insensitivity
@@ -21,7 +21,7 @@ from preshape.shaper import Shaper
 
 __all__ = ["ASKED_FAMILIES", "designed", "needed_by", "taken_by"]
 
-ASKED_FAMILIES: tuple[str, ...] = (*FAMILIES, "convolved", "antiperiod", "mesh", "si")
+ASKED_FAMILIES: tuple[str, ...] = (*FAMILIES, *OTHER_FAMILIES)
 """What can be asked for by name."""
 
 OWN_GRID = ("mesh", "si", "sd_zv")
@@ -155,7 +155,7 @@ def _for_bands(family: str, modes: list[Mode], bands: list[Band], wishes: dict[s
 def _suits(wishes: dict[str, Any], family: str, what: str, spelled: Spelled) -> None:
     """Refuse a wish that the family does not take, and one that it cannot do without."""
     if family not in FAMILIES:
-        raise InputError(f"there is no family {family!r}: choose one of {', '.join(FAMILIES)}.")
+        raise InputError(f"there is no family {family!r}: choose one of {', '.join(ASKED_FAMILIES)}.")
     _refuse(wishes, _parameters(family), what, spelled)
     missing = _parameters(family, needed=True) - wishes.keys()
     if missing:

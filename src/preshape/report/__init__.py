@@ -18,8 +18,9 @@ from preshape.report.document import Document, Heading, Paragraph, Part, Picture
 from preshape.report.figures import as_svg, figure_bytes, figure_format
 from preshape.report.html import as_html
 from preshape.report.move_figure import move_figure
-from preshape.report.pdf import as_pdf, can_make_pdf
+from preshape.report.pdf import as_pdf, can_make_pdf, report_bytes, report_format
 from preshape.report.record import CalibrationJob, DesignJob, GivenJob, Job, Record, RecordedFile
+from preshape.report.record_file import read_record, unpacked
 from preshape.report.robustness import ModeRobustness, mode_robustness, robustness_table
 from preshape.report.robustness_figure import robustness_figure
 from preshape.report.sections import Export
@@ -107,12 +108,16 @@ __all__ = [
     "pick_table",
     "printable",
     "residual_table",
+    "read_record",
+    "report_bytes",
+    "report_format",
     "robustness_figure",
     "robustness_table",
     "simulation_figure",
     "stabilisation_figure",
     "table_sentence",
     "trade_off_figure",
+    "unpacked",
     "verification_figure",
     "verification_table",
 ]

@@ -87,9 +87,11 @@ class SimulatedMove:
         Largest vibration that the shaped move leaves, relative to the unshaped one [-].
     modes : Modes
         What was simulated.
-    predicted : ndarray, shape (mode,)
+    errors : ndarray, shape (error,)
+        By what part the natural frequencies of the machine are off [-]: low, not at all, high.
+    predicted : ndarray, shape (mode, error)
         Part of each mode's amplitude that the shaper leaves at the end [-]: its residual vibration V, by formula.
-    simulated : ndarray, shape (mode,)
+    simulated : ndarray, shape (mode, error)
         The same by the simulation: the amplitude after the shaped move over that after the unshaped one [-]; NaN for a
         mode that the unshaped move leaves at rest.
     """
@@ -101,6 +103,7 @@ class SimulatedMove:
     end_shaped: float
     left: float
     modes: Modes
+    errors: NDArray[np.float64]
     predicted: NDArray[np.float64]
     simulated: NDArray[np.float64]
 

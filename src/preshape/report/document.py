@@ -19,6 +19,10 @@ Role: TypeAlias = Literal["plain", "lead", "label", "warning"]
 RowKind: TypeAlias = Literal["", "chosen", "excluded"]
 
 
+UNPRINTABLE = ("Cc", "Cf", "Cs")
+"""Controls, marks of format, and halves of characters."""
+
+
 @dataclass(frozen=True)
 class Heading:
     """Of a section."""
@@ -98,6 +102,8 @@ def printable(text: str) -> str:
     File names may hold all of these; each is shown as a replacement character.
     """
     return "".join(
-        "�" if character not in "\n\t" and unicodedata.category(character) in ("Cc", "Cf", "Cs") else character
+        "\N{REPLACEMENT CHARACTER}"
+        if character not in "\n\t" and unicodedata.category(character) in UNPRINTABLE
+        else character
         for character in text
     )

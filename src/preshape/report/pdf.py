@@ -5,16 +5,21 @@ The sheet is a fixed text (sheet.typ). What a report says goes to it as data, an
 
 from __future__ import annotations
 
+import os
 from importlib.resources import files
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 import msgspec
 
 from preshape.errors import InputError
 from preshape.report.document import Document, Heading, Paragraph, Part, Picture, Table, Verbatim, printable
+from preshape.report.html import as_html
 
-__all__ = ["RECORD_NAME", "as_pdf", "can_make_pdf"]
+__all__ = ["as_pdf", "can_make_pdf", "report_bytes", "report_format"]
+
+FORMATS = ("html", "pdf")
 
 RECORD_NAME = "preshape-report.json"
 """Of the attachment that holds the record."""
@@ -23,6 +28,21 @@ RECORD_NAME = "preshape-report.json"
 def can_make_pdf() -> bool:
     """Whether Typst is installed."""
     return find_spec("typst") is not None
+
+
+def report_format(path: str | os.PathLike[str]) -> str:
+    """The kind of report that a file name asks for, "html" or "pdf"; InputError for another, or without Typst."""
+    kind = Path(path).suffix.lower().removeprefix(".")
+    if kind not in FORMATS:
+        raise InputError(f"{path} names no kind of report: end it in .html or .pdf.")
+    if kind == "pdf":
+        _check_typst()
+    return kind
+
+
+def report_bytes(document: Document, kind: str) -> bytes:
+    """The report as a file of a kind that :func:`report_format` names."""
+    return as_html(document).encode() if kind == "html" else as_pdf(document)
 
 
 def as_pdf(document: Document) -> bytes:
@@ -38,8 +58,7 @@ def as_pdf(document: Document) -> bytes:
     InputError
         If Typst is not installed.
     """
-    if not can_make_pdf():
-        raise InputError("a PDF needs Typst, which is not installed: pip install 'preshape[pdf]', or take HTML.")
+    _check_typst()
     import typst
 
     data = {
@@ -56,6 +75,11 @@ def as_pdf(document: Document) -> bytes:
         ignore_system_fonts=True,
         sys_inputs={"document": msgspec.json.encode(data).decode(), "record": document.record.json()},
     )
+
+
+def _check_typst() -> None:
+    if not can_make_pdf():
+        raise InputError("a PDF needs Typst, which is not installed: pip install 'preshape[pdf]', or take HTML.")
 
 
 def _part(part: Part) -> dict[str, Any]:

@@ -74,6 +74,7 @@ class DesignJob(_Strict, frozen=True, tag="design", tag_field="job"):
     cost: str | None = None
     fewest: bool | None = None
     at_most: int | None = None
+    prefer: str | None = None
 
 
 class GivenJob(_Strict, frozen=True, tag="given", tag_field="job"):

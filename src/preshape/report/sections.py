@@ -57,14 +57,20 @@ def prediction_parts(move: SimulatedMove | None) -> tuple[Part, ...]:
     """What the formula says is left of each mode, and what is left in the simulated move."""
     if move is None:
         return ()
-    titles = (("mode",), ("predicted:", "V by formula [%]"), ("simulated:", "left by the move [%]"))
+    titles = (
+        ("mode",),
+        ("natural frequency",),
+        ("predicted:", "V by formula [%]"),
+        ("simulated:", "left by the move [%]"),
+    )
     rows = tuple(
-        (str(mode), percent_cell(predicted), percent_cell(simulated))
-        for mode, predicted, simulated in zip(move.modes, move.predicted, move.simulated, strict=True)
+        (str(mode) if column == 0 else "", _off(error), percent_cell(predicted), percent_cell(simulated))
+        for mode, *pairs in zip(move.modes, move.predicted, move.simulated, strict=True)
+        for column, (error, predicted, simulated) in enumerate(zip(move.errors, *pairs, strict=True))
     )
     return (
         Heading("Predicted and simulated"),
-        Table(TextTable(titles, rows)),
+        Table(TextTable(titles, rows), left=2),
         Paragraph(_agreement(move)),
     )
 
@@ -86,9 +92,12 @@ def export_parts(exports: Iterable[Export]) -> tuple[Part, ...]:
     parts: list[Part] = []
     for one in exports:
         if isinstance(one, PasteText):
-            fits = "" if one.fits else ": does not fit"
-            parts.append(Paragraph(f"{one.target} {one.version}{fits}", "label"))
-            parts += [Paragraph(one.note)] if one.note else []
+            said = [
+                f"{one.target} {one.version}",
+                *([] if one.fits else ["does not fit"]),
+                *([one.note] * bool(one.note)),
+            ]
+            parts.append(Paragraph(": ".join(said), "label" if one.fits else "plain"))
             parts += [Verbatim(one.text)] if one.fits else []
         else:
             title, text = one
@@ -141,6 +150,10 @@ def _agreement(move: SimulatedMove) -> str:
     else:
         verdict = f"The two differ by up to {100.0 * largest:.2g} % of the unshaped vibration: trust neither."
     return f"{verdict} {total}"
+
+
+def _off(error: float) -> str:
+    return "as it is" if error == 0.0 else f"{100.0 * abs(error):g} % {'lower' if error < 0.0 else 'higher'}"
 
 
 def _shown(value: object) -> str:

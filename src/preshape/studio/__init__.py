@@ -1,1 +1,1 @@
-"""The studio: one page and an HTTP API, over the workbench."""
+"""The studio: one local web page and its HTTP API over the workbench; a face, no logic."""

@@ -23,10 +23,10 @@ CONVERGED = 1e-7
 """Newton's method has arrived when it moves by less than this fraction of the spacing."""
 
 SAME = 1e-4
-"""Zeros nearer than this fraction of the spacing are one: of a double zero rounding leaves half of the digits."""
+"""Newton's method has found the same zero when two ends are nearer than this fraction of the spacing."""
 
 CIRCLE, AROUND = 0.02, 32
-"""Radius about a zero, relative to the spacing, and points on it, on which F's turns are counted."""
+"""Zeros within this radius, relative to the spacing, count as one of a higher order; points on the circle."""
 
 ZERO = 1e-9
 """|F| there, relative to the sum of the sizes of its terms, where it counts as zero."""
@@ -126,13 +126,18 @@ def _merged(shaper: Shaper, found: NDArray[np.complex128], spacing: float) -> li
             places.append(place)
     if not places:
         return []
-    # How often F turns around 0 on a small circle about each: the principle of the argument.
+    # The principle of the argument on a small circle: F'/F integrates to the zeros within and, times s, to their sum,
+    # which is exact where the zeros of a multiple one by one are rounding.
     turns = CIRCLE * spacing * np.exp(2j * np.pi * np.arange(AROUND) / AROUND)
-    circles = np.add.outer(np.array(places), turns)
-    values = transform(shaper, -circles.ravel(), origin=shaper.duration).reshape(circles.shape)
-    angles = np.angle(np.roll(values, -1, axis=1) / _nonzero(values)).sum(axis=1)
-    orders = np.maximum(np.rint(angles / (2.0 * np.pi)), 1.0).astype(int).tolist()
-    return [ShaperZero(place, order) for place, order in zip(places, orders, strict=True)]
+    value, first, _ = _derivatives(shaper, np.add.outer(np.array(places), turns).ravel())
+    ratios = (first / _nonzero(value)).reshape(len(places), AROUND) * turns / AROUND
+    orders = np.maximum(np.rint(ratios.sum(axis=1).real), 1.0)
+    centres = np.array(places) + (ratios @ turns) / orders
+    zeros: list[ShaperZero] = []
+    for centre, order in zip(centres.tolist(), orders.astype(int).tolist(), strict=True):
+        if not any(abs(centre - other.place) <= CIRCLE * spacing for other in zeros):
+            zeros.append(ShaperZero(centre, order))
+    return zeros
 
 
 def _limited(above: NDArray[np.complex128], below: NDArray[np.complex128], longest: float) -> NDArray[np.complex128]:

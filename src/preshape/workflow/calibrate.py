@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from pathlib import Path
 
 import numpy as np
 
@@ -92,7 +91,7 @@ def calibrate(
         Mode(1.0, damping)  # says what is wrong with it
     measurements = [identify.read(path, sample_rate=sample_rate, part=part) for path in paths]
     inputs = recorded_files(paths)
-    names = [Path(path).name for path in paths]
+    names = [one.name for one in inputs]
     measured = tuple(_measured(name, one, damping) for name, one in zip(names, measurements, strict=True))
     modes = identify.merged_modes([file.identification for file in measured])
     spectra = klipper.as_spectra([(file.scored.frequencies, file.scored.power) for file in measured])

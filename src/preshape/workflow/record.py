@@ -13,10 +13,10 @@ from pathlib import Path
 
 from preshape.errors import InputError
 from preshape.kernel import active_kernel
-from preshape.report import Job, Record, RecordedFile, printable
+from preshape.report import Job, Record, RecordedFile, can_make_pdf, printable
 from preshape.shaper import Shaper
 
-__all__ = ["LARGEST_INPUTS", "new_record", "recorded_files"]
+__all__ = ["LARGEST_INPUTS", "current_versions", "new_record", "recorded_files"]
 
 LARGEST_INPUTS = 32_000_000
 """Bytes of all inputs together that travel in a report."""
@@ -25,6 +25,9 @@ LARGEST_PACKED = 8_000_000
 """The same after compression; a page of more is no page to send around."""
 
 COMPRESSION = 9
+
+LONGEST_NAME = 240
+"""Bytes of a file's name; of a longer one the end is kept."""
 
 BUFFER = 1 << 20
 
@@ -49,7 +52,7 @@ def recorded_files(paths: Iterable[str | os.PathLike[str]]) -> tuple[RecordedFil
             packed = None
         if packed is not None:
             room, packed_room = room - size, packed_room - len(packed)
-        found.append(RecordedFile(name=printable(path.name), size=size, sha256=checksum, packed=packed))
+        found.append(RecordedFile(name=_shown_name(path), size=size, sha256=checksum, packed=packed))
     return tuple(found)
 
 
@@ -59,10 +62,18 @@ def new_record(job: Job, shaper: Shaper, inputs: tuple[RecordedFile, ...] = (), 
         job=job,
         command_line=printable(command_line),
         made=_now(),
-        versions=_versions(),
+        versions=current_versions(),
         inputs=inputs,
         shaper=shaper.to_dict(),
     )
+
+
+def _shown_name(path: Path) -> str:
+    """The name of a file without what would lead out of a folder or to a second line."""
+    name = printable(path.name)
+    for bad in "\n\t/\\":
+        name = name.replace(bad, "\N{REPLACEMENT CHARACTER}")
+    return name if len(name.encode()) <= LONGEST_NAME else name[-LONGEST_NAME // 4 :]
 
 
 def _measured(path: Path) -> tuple[int, str]:
@@ -78,12 +89,14 @@ def _measured(path: Path) -> tuple[int, str]:
     return size, checksum.hexdigest()
 
 
-def _versions() -> dict[str, str]:
+def current_versions() -> dict[str, str]:
+    """Of preshape, and of everything that a shaper or a page may depend on."""
+    sheets = ("typst",) if can_make_pdf() else ()
     return {
         "preshape": version("preshape"),
         "kernel": active_kernel(),
         "Python": platform.python_version(),
-        **{name: version(name) for name in ("numpy", "scipy", "matplotlib", "clarabel")},
+        **{name: version(name) for name in ("numpy", "scipy", "clarabel", "matplotlib", *sheets)},
         "platform": platform.platform(),
     }
 

@@ -12,6 +12,7 @@ from preshape.export.settings_target import MARK
 from preshape.files import write_atomically
 from preshape.report import (
     Calibration,
+    Document,
     Record,
     as_html,
     as_pdf,
@@ -21,9 +22,10 @@ from preshape.report import (
     can_make_pdf,
     trade_off_figure,
 )
+from preshape.shaper import Shaper
 from preshape.workflow.record import new_record
 
-__all__ = ["SavedCalibration", "save_calibration"]
+__all__ = ["SavedCalibration", "make_folders", "save_calibration", "save_design"]
 
 SETTINGS = "settings"
 """The folder below which each firmware has its own."""
@@ -94,7 +96,7 @@ def save_calibration(
     report = calibration_document(calibration, known, figure, second)
     page, sheets = as_html(report), as_pdf(report) if (can_make_pdf() if pdf is None else pdf) else None
     settings = {target / SETTINGS / name: content for text in calibration.texts for name, content in text.files.items()}
-    _make_folders([target, *sorted({path.parent for path in settings})])
+    make_folders([target, *sorted({path.parent for path in settings})])
     _remove_outdated(target / SETTINGS / text.target for text in calibration.texts if not text.fits)
     return SavedCalibration(
         shaper=calibration.shaper.save(target / "shaper.json"),
@@ -107,7 +109,28 @@ def save_calibration(
     )
 
 
-def _make_folders(folders: Iterable[Path]) -> None:
+def save_design(shaper: Shaper, report: Document | None, folder: str | os.PathLike[str]) -> None:
+    """Write shaper.json, and report.html and, where Typst is installed, report.pdf, into `folder`, which is made.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made or written.
+    """
+    target = Path(folder)
+    pages: dict[str, bytes] = {}
+    if report is not None:
+        pages["report.html"] = as_html(report).encode()
+        if can_make_pdf():
+            pages["report.pdf"] = as_pdf(report)
+    make_folders([target])
+    shaper.save(target / "shaper.json")
+    for name, content in pages.items():
+        write_atomically(target / name, content)
+
+
+def make_folders(folders: Iterable[Path]) -> None:
+    """Make those that are not there; InputError when one cannot be made."""
     for folder in folders:
         try:
             folder.mkdir(parents=True, exist_ok=True)

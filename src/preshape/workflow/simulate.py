@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from preshape.mode import Modes
 from preshape.plant import ModalPlant
 from preshape.profile import Profile
-from preshape.report import SimulatedMove
+from preshape.report import FREQUENCY_ERROR, SimulatedMove
 from preshape.shaper import Shaper
 from preshape.vibration import residual_vibration
 
@@ -24,8 +25,8 @@ SHOWN_PERIODS = 6.0
 SAMPLES = 1600
 
 
-AT_REST = 1e-9
-"""A mode that keeps less than this part of what its steps of acceleration left one by one has no ratio."""
+AT_REST = 1e-4
+"""A mode that keeps less than this part of what one step of acceleration leaves has no ratio."""
 
 
 def simulate_move(shaper: Shaper, modes: Modes, shares: Sequence[float]) -> SimulatedMove:
@@ -41,15 +42,14 @@ def simulate_move(shaper: Shaper, modes: Modes, shares: Sequence[float]) -> Simu
     end = float(switches[-1])
     times = np.linspace(0.0, end + shaper.duration + SHOWN_PERIODS * period, SAMPLES)
     # A mode's own vibration acceleration is w^2 times its deflection (the base's acceleration is the command's).
-    omegas = np.array([mode.omega for mode in modes])
-    weights = np.sqrt(np.asarray(shares, dtype=float)) * omegas**2
-    plant = ModalPlant(modes, weights, drive="acceleration")
+    weights = np.sqrt(np.asarray(shares, dtype=float)) * np.array([mode.omega for mode in modes]) ** 2
     command = Profile.steps(switches, steps)
-    before, after = plant.motion(command), plant.motion(command.shaped(shaper))
+    commands = (command, command.shaped(shaper))
+    before, after = (ModalPlant(modes, weights, drive="acceleration").motion(one) for one in commands)
     left = float(weights @ before.residual_amplitudes)
-    moved = before.residual_amplitudes * omegas**2 > AT_REST * np.abs(steps).sum()
-    ratio = np.full(len(modes), np.nan)
-    np.divide(after.residual_amplitudes, before.residual_amplitudes, out=ratio, where=moved)
+    errors = np.array([-FREQUENCY_ERROR, 0.0, FREQUENCY_ERROR])
+    frequencies = np.multiply.outer([mode.frequency for mode in modes], 1.0 + errors)
+    dampings = np.array([[mode.damping] for mode in modes])
     return SimulatedMove(
         times=times,
         unshaped=before("output", times) / left,
@@ -58,6 +58,17 @@ def simulate_move(shaper: Shaper, modes: Modes, shares: Sequence[float]) -> Simu
         end_shaped=end + shaper.duration,
         left=float(weights @ after.residual_amplitudes) / left,
         modes=modes,
-        predicted=np.array([float(residual_vibration(shaper, mode.frequency, mode.damping)) for mode in modes]),
-        simulated=ratio,
+        errors=errors,
+        predicted=residual_vibration(shaper, frequencies, dampings),
+        simulated=np.stack([_kept(commands, zip(column, dampings[:, 0], strict=True)) for column in frequencies.T], 1),
     )
+
+
+def _kept(commands: Iterable[Profile], modes: Iterable[tuple[float, float]]) -> NDArray[np.float64]:
+    """Amplitude after the second command over that after the first, shape (mode,)."""
+    plant = ModalPlant(list(modes), drive="acceleration")
+    before, after = (plant.motion(one).residual_amplitudes for one in commands)
+    moved = before * np.array([mode.omega**2 for mode in plant.modes]) > AT_REST
+    ratio = np.full(before.shape, np.nan)
+    np.divide(after, before, out=ratio, where=moved)
+    return ratio

@@ -4,6 +4,7 @@ from preshape.workflow.workbench.curves import Response
 from preshape.workflow.workbench.exports import ExportFile, ExportTarget, Package, export_targets, packaged
 from preshape.workflow.workbench.link import from_plain, from_text, to_plain, to_text
 from preshape.workflow.workbench.measurement import LARGEST_FILE, Measured, measured
+from preshape.workflow.workbench.open_file import Opened, opened_file
 from preshape.workflow.workbench.plain import plain_measured, plain_trade_off, plain_view
 from preshape.workflow.workbench.solve import bands_asked, shaper_named
 from preshape.workflow.workbench.state import (
@@ -32,6 +33,7 @@ __all__ = [
     "Measured",
     "ModeView",
     "Move",
+    "Opened",
     "Package",
     "Plant",
     "Response",
@@ -45,6 +47,7 @@ __all__ = [
     "from_text",
     "left_at_error",
     "measured",
+    "opened_file",
     "packaged",
     "plain_measured",
     "plain_trade_off",

@@ -42,7 +42,10 @@ export function startCharts(wanted, then) {
     drawing.setAttribute("role", "img");
     one.drawing = drawing;
     known.set(name, one);
-    one.chart.on("rendered", () => listeners.get(name)?.());
+    one.chart.on("rendered", () => {
+      listeners.get(name)?.();
+      box.dataset.rendered = one.draws;
+    });
     box.querySelector("details")?.addEventListener("toggle", () => showTable(one));
     watcher.observe(box);
   }
