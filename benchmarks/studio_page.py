@@ -99,17 +99,15 @@ def _measure(page: Page, what: str, field: str, names: Sequence[str]) -> None:
 
 
 def _serve() -> None:
-    from nicegui import app, ui
+    import uvicorn
+    from nicegui import ui
 
-    from preshape.studio.page import build
+    from preshape.studio.server import Studio, create_app, rules_for
     from preshape.studio.workers import Workers
 
-    workers = Workers()
-    app.on_startup(workers.start)
-    app.on_shutdown(workers.stop)
-    build(app, workers)
     ui.page("/peer")(_peer)
-    ui.run(port=PORT, host="127.0.0.1", show=False, reload=False, tailwind=False)
+    app = create_app(Studio(Workers()), rules_for("127.0.0.1"))
+    uvicorn.run(app, host="127.0.0.1", port=PORT, log_level="warning")
 
 
 def _peer() -> None:
@@ -143,7 +141,7 @@ def _peer() -> None:
 
 
 def _whole(chart: Any, picture: Any) -> dict[str, Any]:
-    option = json.loads(json.dumps(chart.option))
+    option: dict[str, Any] = json.loads(json.dumps(chart.option))
     for series in option["series"]:
         points = chart.drawing(picture).series.get(series["id"])
         if points is not None:

@@ -67,7 +67,7 @@ class Rules:
     token: str = ""
     largest_upload: int = 200_000_000
     largest_request: int = 1_000_000
-    upload_paths: tuple[str, ...] = (r"/api/identify", r"/_nicegui/.*upload.*")
+    upload_paths: tuple[str, ...] = (r"/api/identify", r"/page/measurement")
 
 
 class Guard:

@@ -11,17 +11,21 @@ from typing import TYPE_CHECKING, Any
 
 from preshape.errors import InputError
 from preshape.studio.page import frame
-from preshape.studio.page.compute import VIEW_TIME, Compute
+from preshape.studio.page.compute import VIEW_TIME
 from preshape.studio.page.deeds import DEEDS
+from preshape.studio.page.fields import sentence
 from preshape.studio.page.measurements import Measurements
 from preshape.studio.page.panels import PANELS, written
 from preshape.studio.page.plots import CHARTS, TRADE_OFF
 from preshape.studio.page.session import Session
-from preshape.workflow.workbench import Workbench, from_text, view_of
+from preshape.studio.workers import Overdue
+from preshape.workflow.workbench import from_text, view_of
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
     from nicegui import Client
+
+    from preshape.studio.server import Studio
 
 __all__ = ["STATIC", "build"]
 
@@ -32,36 +36,38 @@ FIRST_PICTURE = 1.5
 """Seconds that a new page waits for its first picture; a design that takes longer is drawn when it is there."""
 
 
-def build(app: FastAPI, compute: Compute, *, first: Workbench | None = None, path: str = "/") -> None:
-    """Put the page on a server.
+def build(app: FastAPI, studio: Studio) -> None:
+    """Put the page on a server, at "/".
 
     Parameters
     ----------
     app : FastAPI
-        NiceGUI's app, or the one it runs with.
-    compute : Compute
-        Who computes: :class:`preshape.studio.workers.Workers`.
-    first : Workbench, optional
-        What a page without a link shows.
-    path : str
-        Where the page is.
+        Whose other routes stay.
+    studio : Studio
+        Who computes, what a page without a link shows, and how large a file may be.
     """
     from fastapi.staticfiles import StaticFiles
-    from nicegui import ui
+    from nicegui import background_tasks, ui
 
-    measurements = Measurements(compute)
+    measurements = Measurements(studio.workers, studio.largest_upload)
     measurements.serve(app)
     app.mount(STATIC, StaticFiles(directory=str(files("preshape.studio.page") / "static")))
 
-    @ui.page(path, title="preshape studio", favicon=frame.ICON, response_timeout=30.0)
+    @ui.page("/", title="preshape studio", favicon=frame.ICON, response_timeout=60.0)
     async def page(client: Client, s: str = "", m: str = "") -> None:
-        trouble = ""
-        try:
-            workbench = from_text(s) if s else first or Workbench()
-        except InputError as error:
-            workbench, trouble = first or Workbench(), str(error)
-        session = Session(workbench, compute, measurements, m[:64])
+        bench, trouble = studio.workbench, ""
+        if s:
+            try:
+                bench = from_text(s)
+            except InputError as error:
+                trouble = sentence(str(error))
+        session = Session(bench, studio.workers, measurements, m[:64])
         await _open(client, session, trouble)
+        if not s and studio.dropped is not None:
+            # Its modes are the workbench's already; its spectrum comes when it is read.
+            background_tasks.create(_show_dropped(session, *studio.dropped))
+
+    ui.run_with(app, title="preshape studio", tailwind=False, show_welcome_message=False, reconnect_timeout=30.0)
 
 
 async def _open(client: Client, session: Session, trouble: str) -> None:
@@ -134,8 +140,16 @@ async def _heard(session: Session, deed: Callable[..., Awaitable[None]], event: 
     values = event.args if isinstance(event.args, list) else []
     try:
         await deed(session, *(str(value) for value in values))
-    except InputError as error:
-        session.say({"say": str(error)})
+    except (InputError, Overdue) as error:
+        session.say({"say": sentence(str(error))})
+
+
+async def _show_dropped(session: Session, name: str, content: bytes) -> None:
+    """Show the measurement that the studio was opened with."""
+    try:
+        session.show_measurement(await session.measurements.read(content, name))
+    except (InputError, Overdue) as error:
+        session.show_measurement("", str(error))
 
 
 async def _later(session: Session) -> None:

@@ -6,8 +6,8 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import replace
 
 from preshape.errors import InputError
-from preshape.studio.page.edits import with_mode, with_more_designs, without_design, without_mode
 from preshape.studio.page.compute import EXPORT_TIME, REPORT_TIME
+from preshape.studio.page.edits import with_mode, with_more_designs, without_design, without_mode
 from preshape.studio.page.export_panel import ExportChoice, packaged_for
 from preshape.studio.page.session import Session
 from preshape.workflow.workbench import Workbench, shaper_named
@@ -49,7 +49,7 @@ async def take(session: Session) -> None:
 
 async def forget(session: Session) -> None:
     """Remove the measurement."""
-    session.forget_measurement()
+    session.show_measurement("")
 
 
 async def add_mode(session: Session) -> None:

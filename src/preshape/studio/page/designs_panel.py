@@ -50,10 +50,10 @@ DASHES = {"A": "", "B": "7 3", "C": "2 3", "D": "9 3 2 3", "unshaped": ""}
 
 def line_sample(name: str) -> str:
     """How a design is drawn: colour and dashes."""
-    colour = name.lower()
+    colour, width = name.lower(), 1.4 if name == "unshaped" else 2.4
     return (
         f'<svg class="line-sample" viewBox="0 0 30 10" aria-hidden="true"><line x1="0" y1="5" x2="30" y2="5" '
-        f'style="stroke:var(--{colour})" stroke-width="{1.4 if name == "unshaped" else 2.4}" stroke-dasharray="{DASHES[name]}"/></svg>'
+        f'style="stroke:var(--{colour})" stroke-width="{width}" stroke-dasharray="{DASHES[name]}"/></svg>'
     )
 
 
@@ -80,14 +80,12 @@ def designs_panel(workbench: Workbench, active: str) -> str:
         f"{one.name} {line_sample(one.name)}</button>"
         for one in workbench.designs
     )
-    full = len(workbench.designs) >= len(DESIGN_NAMES)
-    only = len(workbench.designs) == 1
+    more = fields.button("add-design", "add-design", "+ design", enabled=len(workbench.designs) < len(DESIGN_NAMES))
+    less = fields.button("remove-design", "remove-design", f"Remove {design.name}", enabled=len(workbench.designs) > 1)
     return (
-        '<div class="row"><h2>Designs</h2>'
-        f'<button type="button" id="add-design" data-do="add-design" aria-disabled="{str(full).lower()}">+ design</button>'
-        f'<button type="button" id="remove-design" data-do="remove-design" aria-disabled="{str(only).lower()}">Remove {design.name}</button></div>'
+        f'<div class="row"><h2>Designs</h2>{more}{less}</div>'
         f'<div class="tabs" role="tablist" aria-label="Designs">{tabs}</div>'
-        f'<div role="tabpanel" id="design-fields" aria-labelledby="tab-{design.name}" class="fields">{_fields(workbench, design)}'
+        f'<div role="tabpanel" id="design-fields" aria-labelledby="tab-{design.name}">{_fields(workbench, design)}'
         f'<p class="trouble" role="status" data-error="design.{design.name}"></p></div>'
     )
 

@@ -167,7 +167,8 @@ def _kept(old: AskedDesign, family: str) -> tuple[tuple[str, Any], ...]:
 
 def _change_plant(workbench: Workbench, names: list[str], text: str) -> Workbench:
     if names[0] == "kind":
-        return replace(workbench, plant=replace(workbench.plant, kind=text))
+        # The plant refuses kinds that are not its.
+        return replace(workbench, plant=replace(workbench.plant, kind=text))  # type: ignore[arg-type]
     count = len(workbench.modes)
     gains = list(workbench.plant.gains or [1.0 / count] * count)
     index = int(names[1])

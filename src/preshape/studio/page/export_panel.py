@@ -111,7 +111,8 @@ def export_panel(workbench: Workbench, choice: ExportChoice) -> str:
     limits = dict(zip(target.versions, target.limits, strict=False)).get(version, "")
     return (
         '<h2 id="export-title">Export</h2>'
-        f'<div class="choices">{"".join(rows)}</div><p class="hint" id="export-limits">{escape(target.summary)} It holds: {escape(limits)}.</p>'
+        f'<div class="choices">{"".join(rows)}</div>'
+        f'<p class="hint" id="export-limits">{escape(target.summary)} It holds: {escape(limits)}.</p>'
     )
 
 
@@ -125,7 +126,7 @@ def export_preview(package: Package | None, trouble: str) -> str:
     )
     steps = f'<p class="hint">{escape(" ".join(package.next_step))}</p>' if package.next_step else ""
     return (
-        f'<div class="row"><button type="button" class="main" id="download" data-do="download">Download {escape(package.name)}</button></div>'
+        f'<div class="row">{fields.button("download", "download", f"Download {package.name}", kind="main")}</div>'
         f"{notes}{shown_files}{steps}"
     )
 
@@ -134,20 +135,15 @@ def _file(index: int, name: str, text: str, size: int) -> str:
     identity = f"export-text-{index}"
     if not text:
         return f'<p class="hint">{escape(name)}: {size} bytes, not text.</p>'
-    cut = (
-        f'<p class="hint">Cut after {LONGEST_PREVIEW} of {len(text)} characters; the download holds all.</p>'
-        if len(text) > LONGEST_PREVIEW
-        else ""
-    )
-    copy = (
-        f'<div class="row"><button type="button" id="copy-{index}" data-do="copy-text {identity}">Copy</button></div>'
-        if not cut
-        else ""
-    )
-    return (
-        f'<details id="export-file-{index}"{" open" if index == 0 else ""}><summary>{escape(name)}</summary>{copy}'
-        f'<pre id="{identity}" tabindex="0" role="region" aria-label="Text of {escape(name)}">{escape(text[:LONGEST_PREVIEW])}</pre>{cut}</details>'
-    )
+    shown_text, copy, cut = escape(text[:LONGEST_PREVIEW]), "", ""
+    if len(text) > LONGEST_PREVIEW:
+        told = f"Cut after {LONGEST_PREVIEW} of {len(text)} characters; the download holds all."
+        cut = f'<p class="hint">{told}</p>'
+    else:
+        copy = f'<div class="row">{fields.button(f"copy-{index}", f"copy-text {identity}", "Copy")}</div>'
+    shown = f'<pre id="{identity}" tabindex="0" role="region" aria-label="Text of {escape(name)}">{shown_text}</pre>'
+    opened = " open" if index == 0 else ""
+    return f'<details id="export-file-{index}"{opened}><summary>{escape(name)}</summary>{copy}{shown}{cut}</details>'
 
 
 def _target(name: str) -> ExportTarget:

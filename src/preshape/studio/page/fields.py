@@ -18,6 +18,28 @@ def sentence(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
+def button(
+    identity: str, deed: str, words: str, *, enabled: bool = True, kind: str = "", title: str = "", label: str = ""
+) -> str:
+    """A button and the event it sends; one that can do nothing now keeps its place and the focus."""
+    more = f' class="{kind}"' * bool(kind) + f' title="{escape(title)}"' * bool(title)
+    more += f' aria-label="{escape(label)}"' * bool(label)
+    return (
+        f'<button type="button" id="{identity}" data-do="{escape(deed)}" aria-disabled="{str(not enabled).lower()}"{more}>'
+        f"{escape(words)}</button>"
+    )
+
+
+def for_reader(words: str) -> str:
+    """Words that a screen reader needs and the eye does not."""
+    return f'<span class="for-reader">{escape(words)}</span>'
+
+
+def scrolled(label: str, inside: str) -> str:
+    """A region that scrolls, by keyboard too."""
+    return f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(label)}">{inside}</div>'
+
+
 def trouble_place(field: str) -> str:
     """Where the sentence about a field appears; it is read out when it does."""
     return f'<p class="trouble" role="alert" id="{identity(field)}-trouble" data-error="{escape(field)}"></p>'
@@ -26,8 +48,8 @@ def trouble_place(field: str) -> str:
 def bare_number(field: str, value: str, label: str, step: str = "number") -> str:
     """A number whose label is its column's head; `step` is "number", "ratio" or "whole": what an arrow key adds."""
     return (
-        f'<input type="text" inputmode="decimal" autocomplete="off" id="{identity(field)}" data-field="{escape(field)}" '
-        f'data-step="{step}" aria-label="{escape(label)}" aria-describedby="{identity(field)}-trouble" '
+        f'<input type="text" inputmode="decimal" autocomplete="off" id="{identity(field)}" '
+        f'data-field="{escape(field)}" data-step="{step}" aria-label="{escape(label)}" aria-describedby="{identity(field)}-trouble" '
         f'value="{escape(value)}">{trouble_place(field)}'
     )
 

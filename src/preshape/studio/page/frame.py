@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from html import escape
 from typing import Any
 
+from preshape.studio.page.fields import button, for_reader, scrolled
+
 __all__ = ["CONTROLS", "ICON", "SAYING", "STATUS", "chart_foot", "chart_over", "chart_title", "first", "head", "top"]
 
 CONTROLS = ("drop", "modes", "designs", "trial")
@@ -46,18 +48,15 @@ def top(trouble: str) -> str:
         ("report-html", "report html", "Report", "Report of the design in front, as one HTML file"),
         ("report-pdf", "report pdf", "PDF", "Report of the design in front, as PDF"),
     )
-    made = "".join(
-        f'<button type="button" id="{name}" data-do="{deed}" title="{escape(title)}">{escape(label)}</button>'
-        for name, deed, label, title in buttons
-    )
-    banner = (
-        f'<p class="trouble banner" role="alert">{escape(trouble)} The page shows its first state instead.</p>'
-        if trouble
-        else ""
-    )
+    made = "".join(button(name, deed, label, title=title) for name, deed, label, title in buttons)
+    banner = ""
+    if trouble:
+        banner = f'<p class="trouble banner" role="alert">{escape(trouble)} The page shows its first state instead.</p>'
     return (
-        '<a class="skip" href="#results">Skip to the charts</a><h1>preshape studio<small>commands that do not shake machines</small></h1>'
-        f'<div class="row">{made}<button type="button" id="theme" aria-label="Theme: automatic">◐</button></div>{banner}'
+        '<a class="skip" href="#results">Skip to the charts</a>'
+        "<h1>preshape studio<small>commands that do not shake machines</small></h1>"
+        f'<div class="row">{made}<button type="button" id="theme" aria-label="Theme: automatic">◐</button></div>'
+        f"{banner}"
     )
 
 
@@ -76,8 +75,8 @@ def chart_foot(title: str) -> str:
     """Below a chart: what is wrong, and its numbers as a table."""
     return (
         '<p class="trouble"></p>'
-        f'<details><summary>Numbers<span class="for-reader"> of the chart {escape(title)}</span></summary>'
-        f'<div class="scroll" tabindex="0" role="region" aria-label="Numbers of the chart {escape(title)}"></div></details>'
+        f"<details><summary>Numbers{for_reader(f' of the chart {title}')}</summary>"
+        f"{scrolled(f'Numbers of the chart {title}', '')}</details>"
     )
 
 

@@ -8,19 +8,16 @@ from typing import TYPE_CHECKING
 
 from preshape.errors import InputError
 from preshape.studio.page.compute import FILE_TIME, Compute
-from preshape.studio.page.fields import sentence
-from preshape.workflow.workbench import LARGEST_FILE, Measured, measured
+from preshape.studio.workers import Overdue
+from preshape.workflow.workbench import Measured, measured
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
 
-__all__ = ["ADDRESS", "MOST_BYTES", "Measurements"]
+__all__ = ["ADDRESS", "Measurements"]
 
 ADDRESS = "page/measurement"
 """Where files go up, relative to the page; not part of the HTTP API."""
-
-MOST_BYTES = min(LARGEST_FILE, 64_000_000)
-"""Of one file."""
 
 MOST_KEPT = 16
 """Measurements that the server holds, of all its pages together; the one looked at longest ago goes first."""
@@ -29,14 +26,16 @@ MOST_KEPT = 16
 class Measurements:
     """The measurements that pages may ask for."""
 
-    def __init__(self, compute: Compute) -> None:
-        self._compute = compute
+    def __init__(self, compute: Compute, largest: int) -> None:
+        self._compute, self.largest = compute, largest
         self._kept: OrderedDict[str, Measured] = OrderedDict()
 
     async def read(self, content: bytes, name: str) -> str:
         """Read a file; the key under which it is kept. InputError if it is not a measurement."""
         key = hashlib.sha256(name.encode() + b"\0" + content).hexdigest()[:16]
-        found = self.get(key) or await self._compute.run(FILE_TIME, measured, content, name, largest=MOST_BYTES)
+        found = self.get(key)
+        if found is None:
+            found = await self._compute.run(FILE_TIME, measured, content, name, largest=self.largest)
         self._kept[key] = found
         while len(self._kept) > MOST_KEPT:
             self._kept.popitem(last=False)
@@ -57,14 +56,14 @@ class Measurements:
             parts, size = [], 0
             async for part in request.stream():
                 size += len(part)
-                if size > MOST_BYTES:
-                    told = f"the file has more than {MOST_BYTES / 1e6:g} MB: cut out the part that holds the vibration."
+                if size > self.largest:
+                    told = f"The file has more than {self.largest / 1e6:g} MB: cut the part that holds the vibration."
                     return JSONResponse({"trouble": told}, status_code=413)
                 parts.append(part)
             try:
                 key = await self.read(b"".join(parts), name[:200])
-            except InputError as error:
-                return JSONResponse({"trouble": sentence(str(error))})
+            except (InputError, Overdue) as error:
+                return JSONResponse({"trouble": str(error)})
             return JSONResponse({"key": key})
 
         # Annotations are text here, and the framework looks them up among the module's names.

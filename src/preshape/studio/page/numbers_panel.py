@@ -7,7 +7,7 @@ from collections.abc import Callable
 from html import escape
 
 from preshape.studio.page.designs_panel import line_sample
-from preshape.studio.page.fields import sentence
+from preshape.studio.page.fields import for_reader, scrolled, sentence
 from preshape.workflow.workbench import INSENSITIVITY_AT, DesignView, Drawn, ModeView, View
 
 __all__ = ["numbers_panel", "percent", "proof"]
@@ -38,11 +38,11 @@ def numbers_panel(view: View) -> str:
         f'<tr><th scope="row">{escape(name)}</th>' + "".join(_cell(design, value) for design in view.designs) + "</tr>"
         for name, value in rows
     )
-    return (
-        '<h2 id="numbers-title">Numbers</h2><div class="scroll" tabindex="0" role="region" aria-labelledby="numbers-title">'
-        f'<table class="numbers" id="numbers" aria-labelledby="numbers-title"><thead><tr><th scope="col"><span class="for-reader">Number</span></th>{heads}</tr></thead>'
-        f"<tbody>{_troubles(view)}{body}</tbody></table></div>"
+    table = (
+        f'<table class="numbers" id="numbers"><thead><tr><th scope="col">{for_reader("Number")}</th>{heads}</tr></thead>'
+        f"<tbody>{_troubles(view)}{body}</tbody></table>"
     )
+    return f"<h2>Numbers</h2>{scrolled('Numbers of the designs', table)}"
 
 
 def percent(part: float) -> str:

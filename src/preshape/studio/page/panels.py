@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from preshape.errors import InputError
-from preshape.mode import Mode
 from preshape.studio.page.designs_panel import design_shape, designs_panel, legend
 from preshape.studio.page.export_panel import ExportChoice, export_panel, export_preview, export_shape, packaged_for
 from preshape.studio.page.fields import sentence
-from preshape.studio.page.measurements import ADDRESS, MOST_BYTES
+from preshape.studio.page.measurements import ADDRESS
 from preshape.studio.page.modes_panel import drop_zone, modes_panel
 from preshape.studio.page.numbers_panel import numbers_panel
 from preshape.studio.page.trial_panel import trial_panel, trial_shape
-from preshape.workflow.workbench import View, Workbench
+from preshape.workflow.workbench import Measured, View, Workbench
 
 if TYPE_CHECKING:
     from preshape.studio.page.session import Session
 
-__all__ = ["PANELS", "changed", "preview", "shapes", "troubles", "with_modes", "written"]
+__all__ = ["PANELS", "changed", "preview", "shapes", "troubles", "with_measured", "written"]
 
 PANELS = ("drop", "modes", "designs", "trial", "legend", "numbers", "export", "preview")
 
@@ -32,7 +31,7 @@ def written(session: Session, name: str) -> str:
     """One panel as HTML."""
     bench = session.workbench
     if name == "drop":
-        return drop_zone(session.measured, ADDRESS, MOST_BYTES, session.drop_trouble)
+        return drop_zone(session.measured, ADDRESS, session.measurements.largest, session.drop_trouble)
     if name == "modes":
         return modes_panel(bench)
     if name == "designs":
@@ -88,6 +87,9 @@ def troubles(view: View | None) -> dict[str, str]:
     }
 
 
-def with_modes(workbench: Workbench, modes: Sequence[Mode]) -> Workbench:
-    """With other modes; shares of the old ones have no meaning for them."""
-    return replace(workbench, modes=tuple(modes), plant=replace(workbench.plant, gains=()))
+def with_measured(workbench: Workbench, measured: Measured | None, *, only_clear: bool = True) -> Workbench:
+    """With the modes of a measurement, if there are any to be trusted; the shares of the old ones go with them."""
+    if measured is None or not measured.modes or (only_clear and not measured.clear):
+        return workbench
+    found = sorted((one.mode for one in measured.modes), key=lambda mode: mode.frequency)
+    return replace(workbench, modes=tuple(found), plant=replace(workbench.plant, gains=()))

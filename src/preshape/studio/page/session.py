@@ -18,6 +18,7 @@ from preshape.studio.page.history import History
 from preshape.studio.page.measurements import Measurements
 from preshape.studio.page.plots import TRADE_OFF, Picture
 from preshape.studio.page.wire import Sent
+from preshape.studio.workers import Overdue
 from preshape.workflow.workbench import (
     Measured,
     View,
@@ -119,7 +120,7 @@ class Session:
                 if self._last_edit != (field, now):
                     return None
                 new = edited(self.workbench, field, text)
-        except InputError as error:
+        except (InputError, Overdue) as error:
             self.errors[field] = sentence(str(error))
             return self.say({"errors": self.errors})
         self.errors.pop(field, None)
@@ -154,19 +155,16 @@ class Session:
         self.measurement, self.drop_trouble = key, ""
         self.take_modes(only_clear=True)
 
-    def take_modes(self, *, only_clear: bool = False) -> None:
-        """Make the measured modes the workbench's; undo brings the old ones back."""
-        measured = self.measured
-        if measured is not None and measured.modes and (measured.clear or not only_clear):
-            found = sorted((one.mode for one in measured.modes), key=lambda mode: mode.frequency)
-            self.errors = {field: said for field, said in self.errors.items() if not field.startswith("mode.")}
-            self.history.seal()
-            self.history.change(panels.with_modes(self.workbench, found))
+    def show_measurement(self, key: str, trouble: str = "") -> None:
+        """Show a measurement, or none and why; the modes stay."""
+        self.measurement, self.drop_trouble = key, trouble
         self._moved_on(held=False, forced=True)
 
-    def forget_measurement(self) -> None:
-        """Show the modes alone again."""
-        self.measurement = ""
+    def take_modes(self, *, only_clear: bool = False) -> None:
+        """Make the measured modes the workbench's; undo brings the old ones back."""
+        self.errors = {field: said for field, said in self.errors.items() if not field.startswith("mode.")}
+        self.history.seal()
+        self.history.change(panels.with_measured(self.workbench, self.measured, only_clear=only_clear))
         self._moved_on(held=False, forced=True)
 
     def show_design(self, name: str) -> None:
@@ -199,7 +197,7 @@ class Session:
                 wanted, since = self.workbench, self._changed_at
                 try:
                     self.view = await self.compute.run(VIEW_TIME, view_of, wanted)
-                except InputError as error:
+                except (InputError, Overdue) as error:
                     self.say({"status": sentence(str(error)), "link": to_text(wanted)})
                     if self._changed_at == since:
                         return
@@ -233,7 +231,7 @@ class Session:
                 found = await self.compute.run(
                     TRADE_OFF_TIME, trade_off_of, self.workbench, patience=TRADE_OFF_PATIENCE
                 )
-            except InputError as error:
+            except (InputError, Overdue) as error:
                 return self.say({"charts": {TRADE_OFF.name: {"note": sentence(str(error))}}})
         if self._changed_at == since:
             self.trade_off = found

@@ -87,9 +87,10 @@ def _move(picture: Picture) -> Drawing:
 def _step(picture: Picture) -> Drawing:
     view = picture.view
     series, unit = _curves(picture, view.step_times, view.unshaped_step, _step_of, _position)
+    ends = _ends(picture, _step_of, view.unshaped_step, "of the step")
     return Drawing(
         series,
-        label=f"Response to a unit step, position over time: {_ends(picture, _step_of, view.unshaped_step, 'of the step')}",
+        label=f"Response to a unit step, position over time: {ends}",
         option={"xAxis": [{"name": f"time [{unit}]"}]},
     )
 

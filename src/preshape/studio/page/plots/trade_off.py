@@ -44,10 +44,11 @@ def _drawing(picture: Picture) -> Drawing:
     series = {**empty, "optimum": _points(found.optimum), "families": _points(found.families)}
     for point in found.designs:
         series[point.name] = _points([point])
+    rows = [(f"design {point.name}", point) for point in found.designs]
+    rows += [(point.name, point) for point in found.optimum]
     clauses = [
-        f"{point.name if point.name not in DESIGNS else 'design ' + point.name} takes {1e3 * point.duration:.3g} milliseconds and leaves "
-        f"{100.0 * point.left:.2g} %"
-        for point in (*found.designs, *found.optimum)
+        f"{who} takes {1e3 * point.duration:.3g} milliseconds and leaves {100.0 * point.left:.2g} %"
+        for who, point in rows
     ]
     return Drawing(
         series,
