@@ -14,7 +14,7 @@ __all__ = [
     "TRADE_OFF_TIME",
     "VIEW_TIME",
     "Compute",
-    "one_by_one",
+    "slow_lane",
 ]
 
 P = ParamSpec("P")
@@ -23,7 +23,7 @@ T = TypeVar("T")
 VIEW_TIME = 20.0
 """Seconds for a picture with all its designs."""
 
-TRADE_OFF_TIME, TRADE_OFF_PATIENCE = 40.0, 5.0
+TRADE_OFF_TIME, TRADE_OFF_PATIENCE = 40.0, 4.0
 """Seconds for the trade-off, and those after which it begins no further point."""
 
 FILE_TIME = 60.0
@@ -42,8 +42,8 @@ class Compute(Protocol):
 _queue: list[asyncio.Semaphore] = []
 
 
-def one_by_one() -> asyncio.Semaphore:
-    """Trade-offs wait for one another, so that pictures always find someone free."""
+def slow_lane() -> asyncio.Semaphore:
+    """Exports and trade-offs wait for one another, so that pictures always find someone free."""
     if not _queue:
         _queue.append(asyncio.Semaphore(1))
     return _queue[0]

@@ -24,10 +24,8 @@ def button(
     """A button and the event it sends; one that can do nothing now keeps its place and the focus."""
     more = f' class="{kind}"' * bool(kind) + f' title="{escape(title)}"' * bool(title)
     more += f' aria-label="{escape(label)}"' * bool(label)
-    return (
-        f'<button type="button" id="{identity}" data-do="{escape(deed)}" aria-disabled="{str(not enabled).lower()}"{more}>'
-        f"{escape(words)}</button>"
-    )
+    more += f' aria-disabled="{str(not enabled).lower()}"'
+    return f'<button type="button" id="{identity}" data-do="{escape(deed)}"{more}>{escape(words)}</button>'
 
 
 def for_reader(words: str) -> str:
@@ -49,8 +47,8 @@ def bare_number(field: str, value: str, label: str, step: str = "number") -> str
     """A number whose label is its column's head; `step` is "number", "ratio" or "whole": what an arrow key adds."""
     return (
         f'<input type="text" inputmode="decimal" autocomplete="off" id="{identity(field)}" '
-        f'data-field="{escape(field)}" data-step="{step}" aria-label="{escape(label)}" aria-describedby="{identity(field)}-trouble" '
-        f'value="{escape(value)}">{trouble_place(field)}'
+        f'data-field="{escape(field)}" data-step="{step}" aria-label="{escape(label)}" '
+        f'aria-describedby="{identity(field)}-trouble" value="{escape(value)}">{trouble_place(field)}'
     )
 
 

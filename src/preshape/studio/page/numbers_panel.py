@@ -39,8 +39,8 @@ def numbers_panel(view: View) -> str:
         for name, value in rows
     )
     table = (
-        f'<table class="numbers" id="numbers"><thead><tr><th scope="col">{for_reader("Number")}</th>{heads}</tr></thead>'
-        f"<tbody>{_troubles(view)}{body}</tbody></table>"
+        f'<table class="numbers" id="numbers"><thead><tr><th scope="col">{for_reader("Number")}</th>{heads}</tr>'
+        f"</thead><tbody>{_troubles(view)}{body}</tbody></table>"
     )
     return f"<h2>Numbers</h2>{scrolled('Numbers of the designs', table)}"
 

@@ -10,9 +10,9 @@ from typing import Any
 
 from preshape.errors import InputError
 from preshape.studio.page import panels
-from preshape.studio.page.compute import EXPORT_TIME, TRADE_OFF_PATIENCE, TRADE_OFF_TIME, VIEW_TIME, Compute, one_by_one
+from preshape.studio.page.compute import EXPORT_TIME, TRADE_OFF_PATIENCE, TRADE_OFF_TIME, VIEW_TIME, Compute, slow_lane
 from preshape.studio.page.edits import edited, fields_of
-from preshape.studio.page.export_panel import ExportChoice
+from preshape.studio.page.export_panel import ExportChoice, export_preview
 from preshape.studio.page.fields import sentence
 from preshape.studio.page.history import History
 from preshape.studio.page.measurements import Measurements
@@ -32,8 +32,8 @@ from preshape.workflow.workbench import (
 
 __all__ = ["Session"]
 
-QUIET = 0.7
-"""Seconds without a change after which what takes longer is computed."""
+SHORT_QUIET, QUIET = 0.25, 1.0
+"""Seconds without a change after which the export is written, and the trade-off computed."""
 
 TOGETHER = 2.0
 """Edits of one field within so many seconds are one step of undo."""
@@ -214,7 +214,14 @@ class Session:
     async def show_export(self) -> None:
         """Write the export's preview anew; some targets take longer than a picture."""
         wanted = (self.workbench, self.export)
-        html = await self.compute.run(EXPORT_TIME, panels.preview, *wanted)
+        await asyncio.sleep(SHORT_QUIET)
+        async with slow_lane():
+            if wanted != (self.workbench, self.export):
+                return
+            try:
+                html = await self.compute.run(EXPORT_TIME, panels.preview, *wanted)
+            except Overdue as error:
+                html = export_preview(None, str(error))
         if wanted == (self.workbench, self.export):
             self.say({"html": {"preview": html}})
 
@@ -224,7 +231,7 @@ class Session:
         await asyncio.sleep(QUIET)
         if self._changed_at != since:
             return
-        async with one_by_one():
+        async with slow_lane():
             if self._changed_at != since:
                 return
             try:
