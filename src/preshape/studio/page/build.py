@@ -84,10 +84,14 @@ async def _open(client: Client, session: Session, trouble: str) -> None:
     with ui.element("div").classes("page"):
         ui.html(frame.top(trouble), sanitize=False, tag="header").classes("top")
         with ui.element("div").classes("bench"):
-            with ui.element("aside").classes("controls").props('aria-label="Modes and designs"'):
+            with ui.element("section").classes("controls").props('aria-label="Modes and designs"'):
                 for name in frame.CONTROLS:
                     _panel(session, name, tag="section")
-            with ui.element("main").classes("results").props('id="results" tabindex="-1"'):
+            with (
+                ui.element("section")
+                .classes("results")
+                .props('id="results" tabindex="-1" aria-label="Charts, numbers and export"')
+            ):
                 with ui.element("div").classes("row"):
                     _panel(session, "legend", classes="legend")
                     ui.html(frame.STATUS, sanitize=False, tag="span").classes("status")
