@@ -36,7 +36,7 @@ def test_a_wrong_number_is_told_beside_its_field(open_page: OpenPage, name: str,
     if name.startswith("controller"):
         page.locator("#trial-controller > summary").click()
     if name == "export.rate":
-        field(page, "export.target").select_option("csv")
+        field(page, "export.target").select_option("st")
     before = page.locator("#numbers").inner_text()
     good = field(page, name).input_value()
     field(page, name).fill(text)
@@ -92,7 +92,7 @@ def test_broken_links_are_told_and_the_page_works(open_page: OpenPage) -> None:
 
 
 def test_a_design_without_a_solution_says_why_and_the_others_go_on(open_page: OpenPage) -> None:
-    bench = Workbench((Mode(20.0, 0.02), Mode(33.3, 0.01)), (AskedDesign("A", "antiperiod"), AskedDesign("B", "zvd")))
+    bench = Workbench((Mode(20.0, 0.02), Mode(33.3, 0.01)), (AskedDesign("A", "sd_zv"), AskedDesign("B", "zvd")))
     page = open_page(f"?s={to_text(bench)}")
     expect(number(page, "What is wrong")).not_to_be_empty()
     expect(trouble(page, "design.A")).not_to_be_empty()

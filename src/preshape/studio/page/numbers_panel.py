@@ -8,12 +8,10 @@ from html import escape
 
 from preshape.studio.page.designs_panel import line_sample
 from preshape.studio.page.fields import for_reader, scrolled, sentence
+from preshape.studio.page.plots.chart import DUST, percent
 from preshape.workflow.workbench import INSENSITIVITY_AT, DesignView, Drawn, ModeView, View
 
-__all__ = ["numbers_panel", "percent", "proof"]
-
-DUST = 1e-9
-"""Parts below this are the rounding of the arithmetic."""
+__all__ = ["numbers_panel", "proof"]
 
 
 def numbers_panel(view: View) -> str:
@@ -43,11 +41,6 @@ def numbers_panel(view: View) -> str:
         f"</thead><tbody>{_troubles(view)}{body}</tbody></table>"
     )
     return f"<h2>Numbers</h2>{scrolled('Numbers of the designs', table)}"
-
-
-def percent(part: float) -> str:
-    """A part as percent; rounding dust is zero."""
-    return "0" if part < DUST else f"{100.0 * part:.3g}"
 
 
 def _millimetres(length: float, dust: float) -> str:

@@ -13,6 +13,7 @@ from preshape.workflow.workbench import DESIGN_NAMES, DesignView, Measured, View
 
 __all__ = [
     "DESIGNS",
+    "DUST",
     "Axis",
     "Chart",
     "Drawing",
@@ -23,6 +24,7 @@ __all__ = [
     "length_unit",
     "line",
     "listed",
+    "percent",
     "scatter",
     "time_unit",
 ]
@@ -33,6 +35,9 @@ Points = tuple[NDArray[np.float64], NDArray[np.float64]]
 """x and y, shape (point,) each; NaN in y is a gap."""
 
 TOOLTIP_NUMBER = "v => typeof v === 'number' ? String(Number(v.toPrecision(4))) : v"
+
+DUST = 1e-9
+"""Parts below this are the rounding of the arithmetic."""
 
 SHORT_TIME = 0.5
 """Times up to this [s] are shown in milliseconds."""
@@ -175,6 +180,11 @@ def length_unit(largest: float) -> tuple[float, str]:
     if not 0.0 < largest < 0.5:
         return 1.0, "m"
     return (1e3, "mm") if largest >= 5e-4 else (1e6, "µm")
+
+
+def percent(part: float) -> str:
+    """A part as percent; rounding dust is zero."""
+    return "0" if part < DUST else f"{100.0 * part:.3g}"
 
 
 def listed(parts: Sequence[str]) -> str:

@@ -19,6 +19,7 @@ from preshape.studio.page.plots.chart import (
     length_unit,
     line,
     listed,
+    percent,
     time_unit,
 )
 from preshape.workflow.workbench import Drawn, Response
@@ -59,13 +60,14 @@ def _move_of(drawn: Drawn) -> Response:
     return drawn.move
 
 
-def _ends(picture: Picture, of: Callable[[Drawn], Response], unshaped: Response, unit: str) -> str:
+def _ends(picture: Picture, of: Callable[[Drawn], Response], unshaped: Response, size: float) -> str:
     """When each command ends and what vibrates on."""
     rows = [("unshaped", unshaped)]
     rows += [(f"design {name}", of(one.drawn)) for name, one in picture.designs.items() if one.drawn is not None]
     return listed(
         [
-            f"{who} ends at {one.end_time:.4g} seconds and vibrates on by at most {one.residual:.2g} {unit}"
+            f"{who} ends at {one.end_time:.4g} seconds and vibrates on by at most "
+            f"{percent(one.residual / size)} percent of the distance"
             for who, one in rows
         ]
     )
@@ -73,12 +75,14 @@ def _ends(picture: Picture, of: Callable[[Drawn], Response], unshaped: Response,
 
 def _move(picture: Picture) -> Drawing:
     view = picture.view
-    length, length_name = length_unit(abs(view.workbench.move.distance))
+    size = abs(view.workbench.move.distance)
+    ends = _ends(picture, _move_of, view.unshaped_move, size)
+    length, length_name = length_unit(size)
     series, unit = _curves(picture, view.move_times, view.unshaped_move, _move_of, _position, length)
     series["command"] = time_unit(float(view.move_times[-1]))[0] * view.move_times, length * view.unshaped_move.command
     return Drawing(
         series,
-        label=f"Response to the move, position over time: {_ends(picture, _move_of, view.unshaped_move, 'metres')}",
+        label=f"Response to the move, position over time: {ends}",
         detail="thin dashes: command",
         option={"xAxis": [{"name": f"time [{unit}]"}], "yAxis": [{"name": f"position [{length_name}]"}]},
     )
@@ -87,7 +91,7 @@ def _move(picture: Picture) -> Drawing:
 def _step(picture: Picture) -> Drawing:
     view = picture.view
     series, unit = _curves(picture, view.step_times, view.unshaped_step, _step_of, _position)
-    ends = _ends(picture, _step_of, view.unshaped_step, "of the step")
+    ends = _ends(picture, _step_of, view.unshaped_step, 1.0)
     return Drawing(
         series,
         label=f"Response to a unit step, position over time: {ends}",

@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from preshape.studio.page.plots.chart import DESIGNS, Axis, Chart, Drawing, Picture, Points, frame, gapped, line, listed
+from preshape.studio.page.plots.chart import (
+    DESIGNS,
+    Axis,
+    Chart,
+    Drawing,
+    Picture,
+    Points,
+    frame,
+    gapped,
+    line,
+    listed,
+    percent,
+)
 from preshape.workflow.workbench import INSENSITIVITY_AT
 
 __all__ = ["SENSITIVITY"]
@@ -22,7 +34,7 @@ def _drawing(picture: Picture) -> Drawing:
         series[name] = None if drawn is None else (view.frequencies, 100.0 * drawn.vibration)
         if drawn is not None:
             top = max(top, 100.0 * float(drawn.vibration.max()))
-            left = ", ".join(f"{100.0 * mode.residual:.2g} %" for mode in drawn.modes)
+            left = ", ".join(f"{percent(mode.residual)} %" for mode in drawn.modes)
             clauses.append(f"design {name} leaves {left} at the modes")
     ends = np.array([0.0, picture.top])
     series["limit"] = ends, np.full(2, 100.0 * INSENSITIVITY_AT)
