@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import multiprocessing
 import os
+import queue
 import traceback
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -48,23 +49,23 @@ class Workers:
 
     def __init__(self, count: int | None = None) -> None:
         self.count = max(1, min(4, os.cpu_count() or 1)) if count is None else count
+        # A thread a process: whoever has a thread finds a process free.
         self._threads = ThreadPoolExecutor(self.count, thread_name_prefix="preshape-worker")
         self._processes = [_Process() for _ in range(self.count)]
-        self._free: asyncio.Queue[_Process] | None = None
-        self._waiting = 0
+        self._free: queue.SimpleQueue[_Process] = queue.SimpleQueue()
+        self._jobs = 0
 
     def start(self) -> None:
         """Start the processes; they load while the first page is drawn."""
-        self._free = asyncio.Queue()
         for process in self._processes:
             process.start()
-            self._free.put_nowait(process)
+            self._free.put(process)
 
     def stop(self) -> None:
         """End the processes, whatever they do."""
+        self._threads.shutdown(wait=False, cancel_futures=True)
         for process in self._processes:
             process.end()
-        self._threads.shutdown(wait=False, cancel_futures=True)
 
     async def run(self, seconds: float, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """What a function returns, computed in another process.
@@ -83,28 +84,22 @@ class Workers:
         InputError
             As the function does.
         """
-        assert self._free is not None, "start() comes first"
-        if self._waiting >= MOST_WAITING:
+        if self._jobs >= self.count + MOST_WAITING:
             raise Overdue("too many requests wait at once: try again in a moment.")
-        self._waiting += 1
+        self._jobs += 1
         try:
-            process = await self._free.get()
+            loop = asyncio.get_running_loop()
+            result: T = await loop.run_in_executor(self._threads, self._run, seconds, function, args, kwargs)
+            return result
         finally:
-            self._waiting -= 1
-        # A client that leaves does not free the process: it is back when its job has ended.
-        job = asyncio.ensure_future(self._call(process, seconds, function, args, kwargs))
-        result: T = await asyncio.shield(job)
-        return result
+            self._jobs -= 1
 
-    async def _call(
-        self, process: _Process, seconds: float, function: Callable[..., Any], args: Any, kwargs: Any
-    ) -> Any:
-        loop = asyncio.get_running_loop()
+    def _run(self, seconds: float, function: Callable[..., Any], args: Any, kwargs: Any) -> Any:
+        process = self._free.get()
         try:
-            return await loop.run_in_executor(self._threads, process.call, seconds, function, args, kwargs)
+            return process.call(seconds, function, args, kwargs)
         finally:
-            assert self._free is not None
-            self._free.put_nowait(process)
+            self._free.put(process)
 
 
 class _Process:
