@@ -112,7 +112,7 @@ def test_what_there_is_is_listed(client: TestClient) -> None:
 
 BAD: list[tuple[str, Any, str]] = [
     ("/api/design", {"modes": [[k, 0.0] for k in range(1, 1_000)]}, "at most 12"),
-    ("/api/design", {"modes": [[-3.0, 0.0]]}, "greater than or equal to 0.0001"),
+    ("/api/design", {"modes": [[-3.0, 0.0]]}, "greater than or equal to 0.001"),
     ("/api/design", {"modes": [[3.0, 1.0]]}, "less than 1"),
     ("/api/design", {"modes": [["ten", 0.0]]}, "number"),
     ("/api/design", {"modes": [[True, 0.0]]}, "number"),

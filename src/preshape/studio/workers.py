@@ -26,6 +26,9 @@ MOST_WAITING = 200
 TO_LEAVE = 2.0
 """Time [s] that a process has to end by itself."""
 
+TO_LOAD = 120.0
+"""Time [s] that a process may take to begin, on a computer that is busy with other things."""
+
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 """The matrices here are small: with several threads linear algebra is slower, the more so with many clients."""
 
@@ -109,6 +112,7 @@ class _Process:
         self._context = multiprocessing.get_context("spawn")
         self._process: multiprocessing.process.BaseProcess | None = None
         self._pipe: Connection | None = None
+        self._ready = False
 
     def start(self) -> None:
         here, there = self._context.Pipe()
@@ -128,7 +132,7 @@ class _Process:
 
     def end(self) -> None:
         process, pipe = self._process, self._pipe
-        self._process = self._pipe = None
+        self._process, self._pipe, self._ready = None, None, False
         if pipe is not None:
             pipe.close()
         if process is not None:
@@ -142,6 +146,11 @@ class _Process:
             self.start()
         assert self._pipe is not None
         try:
+            if not self._ready:  # to load is not the job's time
+                if not self._pipe.poll(TO_LOAD):
+                    self.end()
+                    raise Overdue("the computer is too busy to begin: try again in a moment.")
+                self._ready = self._pipe.recv() == "ready"
             self._pipe.send((function, args, kwargs))
             if not self._pipe.poll(seconds):
                 self.end()
@@ -164,6 +173,7 @@ def _work(pipe: Connection) -> None:
     """The life of a process: jobs, one after the other, until the pipe closes."""
     _prepare()
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
+        pipe.send("ready")
         while True:
             function, args, kwargs = pipe.recv()
             pipe.send(_outcome(function, args, kwargs))

@@ -28,7 +28,7 @@ DESIGN_NAMES = ("A", "B", "C", "D")
 LARGEST = 1e9
 """Larger distances, speeds, accelerations, weights and options are refused: they are slips."""
 
-HIGHEST_FREQUENCY, LOWEST_FREQUENCY = 1e6, 1e-4
+HIGHEST_FREQUENCY, LOWEST_FREQUENCY = 1e5, 1e-3
 """Of a mode on the workbench [Hz]."""
 
 WIDEST_SPAN = 1000.0
@@ -38,7 +38,7 @@ WIDEST_BAND = 1.5
 """Full width of a band around a mode, relative to its frequency."""
 
 LONGEST_MOVE = 1e5
-"""Periods of the slowest mode that a move may take; a longer one cannot be drawn."""
+"""Periods of the fastest mode that a move may take; a longer one can neither be drawn nor computed soon."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,9 +244,9 @@ class Workbench:
         gains = self.plant.gains
         if gains and len(gains) != len(modes):
             raise InputError(f"{len(gains)} gains for {len(modes)} modes: give one a mode, or none for equal shares.")
-        if self.move.duration * slowest > LONGEST_MOVE:
+        if self.move.duration * fastest > LONGEST_MOVE:
             raise InputError(
-                f"the move takes {self.move.duration:.3g} s, more than {LONGEST_MOVE:g} periods of the slowest mode: "
+                f"the move takes {self.move.duration:.3g} s, more than {LONGEST_MOVE:g} periods of the fastest mode: "
                 "raise its speed or acceleration, or shorten the distance."
             )
 
