@@ -12,12 +12,15 @@ from preshape.mode import Mode, Modes
 from preshape.shaper import Shaper
 from preshape.workflow.workbench import MOST_MODES, AskedDesign, Workbench, from_plain
 from preshape.workflow.workbench.solve import MOST_IMPULSES
-from preshape.workflow.workbench.state import MOST_BANDS
+from preshape.workflow.workbench.state import HIGHEST_FREQUENCY, LOWEST_FREQUENCY, MOST_BANDS
 
 __all__ = ["DesignRequest", "ExportRequest", "ReportRequest", "ShaperModel", "WorkbenchModel"]
 
 Number = Annotated[float, Field(allow_inf_nan=False, strict=True)]
-Frequency = Annotated[float, Field(gt=0.0, allow_inf_nan=False, strict=True, description="[Hz]")]
+Frequency = Annotated[
+    float,
+    Field(ge=LOWEST_FREQUENCY, le=HIGHEST_FREQUENCY, allow_inf_nan=False, strict=True, description="[Hz]"),
+]
 Damping = Annotated[float, Field(ge=0.0, lt=1.0, allow_inf_nan=False, strict=True, description="Ratio [-].")]
 ModePair = Annotated[tuple[Frequency, Damping], Field(description="Natural frequency [Hz] and damping ratio [-].")]
 ModeList = Annotated[list[ModePair], Field(min_length=1, max_length=MOST_MODES)]
@@ -160,10 +163,9 @@ class ExportRequest(_Chosen):
 class ReportRequest(_Chosen):
     """A shaper and the modes it is judged at."""
 
+    modes: ModeList
     remarks: list[Annotated[str, Field(max_length=500)]] = Field([], max_length=20, description="Shown at the top.")
 
     def judged_at(self) -> Modes:
-        """The modes; InputError if none are given."""
-        if self.modes is None:
-            raise InputError("no modes were given: a report needs to know what vibrates.")
+        """The modes."""
         return Modes([Mode(*pair) for pair in self.modes])

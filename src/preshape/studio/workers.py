@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import multiprocessing
 import os
+import queue
 import traceback
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -24,6 +25,9 @@ MOST_WAITING = 200
 
 TO_LEAVE = 2.0
 """Time [s] that a process has to end by itself."""
+
+TO_LOAD = 120.0
+"""Time [s] that a process may take to begin, on a computer that is busy with other things."""
 
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 """The matrices here are small: with several threads linear algebra is slower, the more so with many clients."""
@@ -48,23 +52,23 @@ class Workers:
 
     def __init__(self, count: int | None = None) -> None:
         self.count = max(1, min(4, os.cpu_count() or 1)) if count is None else count
+        # A thread a process: whoever has a thread finds a process free.
         self._threads = ThreadPoolExecutor(self.count, thread_name_prefix="preshape-worker")
         self._processes = [_Process() for _ in range(self.count)]
-        self._free: asyncio.Queue[_Process] | None = None
-        self._waiting = 0
+        self._free: queue.SimpleQueue[_Process] = queue.SimpleQueue()
+        self._jobs = 0
 
     def start(self) -> None:
         """Start the processes; they load while the first page is drawn."""
-        self._free = asyncio.Queue()
         for process in self._processes:
             process.start()
-            self._free.put_nowait(process)
+            self._free.put(process)
 
     def stop(self) -> None:
         """End the processes, whatever they do."""
+        self._threads.shutdown(wait=False, cancel_futures=True)
         for process in self._processes:
             process.end()
-        self._threads.shutdown(wait=False, cancel_futures=True)
 
     async def run(self, seconds: float, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """What a function returns, computed in another process.
@@ -83,28 +87,22 @@ class Workers:
         InputError
             As the function does.
         """
-        assert self._free is not None, "start() comes first"
-        if self._waiting >= MOST_WAITING:
+        if self._jobs >= self.count + MOST_WAITING:
             raise Overdue("too many requests wait at once: try again in a moment.")
-        self._waiting += 1
+        self._jobs += 1
         try:
-            process = await self._free.get()
+            loop = asyncio.get_running_loop()
+            result: T = await loop.run_in_executor(self._threads, self._run, seconds, function, args, kwargs)
+            return result
         finally:
-            self._waiting -= 1
-        # A client that leaves does not free the process: it is back when its job has ended.
-        job = asyncio.ensure_future(self._call(process, seconds, function, args, kwargs))
-        result: T = await asyncio.shield(job)
-        return result
+            self._jobs -= 1
 
-    async def _call(
-        self, process: _Process, seconds: float, function: Callable[..., Any], args: Any, kwargs: Any
-    ) -> Any:
-        loop = asyncio.get_running_loop()
+    def _run(self, seconds: float, function: Callable[..., Any], args: Any, kwargs: Any) -> Any:
+        process = self._free.get()
         try:
-            return await loop.run_in_executor(self._threads, process.call, seconds, function, args, kwargs)
+            return process.call(seconds, function, args, kwargs)
         finally:
-            assert self._free is not None
-            self._free.put_nowait(process)
+            self._free.put(process)
 
 
 class _Process:
@@ -114,6 +112,7 @@ class _Process:
         self._context = multiprocessing.get_context("spawn")
         self._process: multiprocessing.process.BaseProcess | None = None
         self._pipe: Connection | None = None
+        self._ready = False
 
     def start(self) -> None:
         here, there = self._context.Pipe()
@@ -133,7 +132,7 @@ class _Process:
 
     def end(self) -> None:
         process, pipe = self._process, self._pipe
-        self._process = self._pipe = None
+        self._process, self._pipe, self._ready = None, None, False
         if pipe is not None:
             pipe.close()
         if process is not None:
@@ -147,6 +146,11 @@ class _Process:
             self.start()
         assert self._pipe is not None
         try:
+            if not self._ready:  # to load is not the job's time
+                if not self._pipe.poll(TO_LOAD):
+                    self.end()
+                    raise Overdue("the computer is too busy to begin: try again in a moment.")
+                self._ready = self._pipe.recv() == "ready"
             self._pipe.send((function, args, kwargs))
             if not self._pipe.poll(seconds):
                 self.end()
@@ -169,6 +173,7 @@ def _work(pipe: Connection) -> None:
     """The life of a process: jobs, one after the other, until the pipe closes."""
     _prepare()
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
+        pipe.send("ready")
         while True:
             function, args, kwargs = pipe.recv()
             pipe.send(_outcome(function, args, kwargs))

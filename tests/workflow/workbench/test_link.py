@@ -27,7 +27,7 @@ from preshape.workflow.workbench import (
     to_text,
 )
 
-FREQUENCIES = st.floats(0.01, 1e4)
+FREQUENCIES = st.floats(0.5, 400.0)
 DAMPINGS = st.floats(0.0, 0.9)
 MODES = st.lists(
     st.builds(Mode, FREQUENCIES, DAMPINGS), min_size=1, max_size=12, unique_by=lambda mode: round(mode.frequency, 3)
@@ -106,6 +106,7 @@ PLAIN = to_plain(Workbench())
         {**PLAIN, "modes": [[10.0, 0.0]] * 2},
         {**PLAIN, "modes": [[float(k), 0.0] for k in range(1, 14)]},
         {**PLAIN, "modes": [[-3.0, 0.0]]},
+        {**PLAIN, "modes": [[0.01, 0.0], [20.0, 0.0]]},
         {**PLAIN, "modes": [[3.0, 1.0]]},
         {**PLAIN, "plant": {"kind": "rocket", "gains": []}},
         {**PLAIN, "plant": {"kind": "driven", "gains": [1.0, 2.0]}},

@@ -28,14 +28,17 @@ DESIGN_NAMES = ("A", "B", "C", "D")
 LARGEST = 1e9
 """Larger distances, speeds, accelerations, weights and options are refused: they are slips."""
 
-HIGHEST_FREQUENCY, LOWEST_FREQUENCY = 1e6, 1e-4
+HIGHEST_FREQUENCY, LOWEST_FREQUENCY = 1e5, 1e-3
 """Of a mode on the workbench [Hz]."""
+
+WIDEST_SPAN = 1000.0
+"""Highest frequency over the lowest: of a wider span the fast mode could not be seen beside the slow one."""
 
 WIDEST_BAND = 1.5
 """Full width of a band around a mode, relative to its frequency."""
 
 LONGEST_MOVE = 1e5
-"""Periods of the slowest mode that a move may take; a longer one cannot be drawn."""
+"""Periods of the fastest mode that a move may take; a longer one can neither be drawn nor computed soon."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,6 +231,12 @@ class Workbench:
                     f"frequency {mode.frequency:g} Hz is outside the workbench's {LOWEST_FREQUENCY:g} to "
                     f"{HIGHEST_FREQUENCY:g} Hz: check its unit."
                 )
+        slowest, fastest = (choose(mode.frequency for mode in self.modes) for choose in (min, max))
+        if fastest > WIDEST_SPAN * slowest:
+            raise InputError(
+                f"the modes from {slowest:g} to {fastest:g} Hz are too far apart: the workbench holds a ratio of "
+                f"{WIDEST_SPAN:g}; leave the fastest out, which such a shaper can hardly excite."
+            )
         names = [design.name for design in self.designs]
         if len(set(names)) != len(names):
             raise InputError(f"design {max(names, key=names.count)} is given twice: designs are A to D, each once.")
@@ -235,10 +244,9 @@ class Workbench:
         gains = self.plant.gains
         if gains and len(gains) != len(modes):
             raise InputError(f"{len(gains)} gains for {len(modes)} modes: give one a mode, or none for equal shares.")
-        slowest = min(mode.frequency for mode in self.modes)
-        if self.move.duration * slowest > LONGEST_MOVE:
+        if self.move.duration * fastest > LONGEST_MOVE:
             raise InputError(
-                f"the move takes {self.move.duration:.3g} s, more than {LONGEST_MOVE:g} periods of the slowest mode: "
+                f"the move takes {self.move.duration:.3g} s, more than {LONGEST_MOVE:g} periods of the fastest mode: "
                 "raise its speed or acceleration, or shorten the distance."
             )
 
