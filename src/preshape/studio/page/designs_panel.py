@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from html import escape
 
 from preshape.design import ASKED_FAMILIES, OPTIONS, needed_by, taken_by
@@ -45,6 +46,11 @@ OPTION_WORDS = {
     "fewest": "Fewest impulses",
 }
 
+OTHER_FAMILIES = re.compile(r" \((?:(?:[a-z_]+|EI)(?:, )?)+\)")
+"""Where an option's summary says which families take it: here it stands at one of them."""
+
+DEFAULT = re.compile(r"\s*\[default: ([^\]]+)\]")
+
 DASHES = {"A": "", "B": "7 3", "C": "2 3", "D": "9 3 2 3", "unshaped": ""}
 
 
@@ -85,8 +91,8 @@ def designs_panel(workbench: Workbench, active: str) -> str:
     return (
         f'<div class="row"><h2>Designs</h2>{more}{less}</div>'
         f'<div class="tabs" role="tablist" aria-label="Designs">{tabs}</div>'
-        f'<div role="tabpanel" id="design-fields" aria-labelledby="tab-{design.name}">{_fields(workbench, design)}'
-        f'<p class="trouble" role="status" data-error="design.{design.name}"></p></div>'
+        f'<div role="tabpanel" id="design-fields" aria-labelledby="tab-{design.name}">'
+        f'<p class="trouble" role="status" data-error="design.{design.name}"></p>{_fields(workbench, design)}</div>'
     )
 
 
@@ -117,14 +123,17 @@ def _fields(workbench: Workbench, design: AskedDesign) -> str:
 
 def _option(field: str, value: str, name: str, needed: bool) -> str:
     option = OPTIONS[name]
-    label, hint = OPTION_WORDS.get(name, name.replace("_", " ").capitalize()), option.summary
+    label, hint = OPTION_WORDS.get(name, name.replace("_", " ").capitalize()), OTHER_FAMILIES.sub("", option.summary)
+    default = DEFAULT.search(hint)
+    none = "needed" if needed else default[1] if default else "default"
+    hint = DEFAULT.sub("", hint)
     if option.kind == "flag":
         return fields.flag(field, value, label, hint=hint)
     if option.kind == "choice":
-        chosen = [("", "default"), *((one, one.replace("_", " ")) for one in option.choices)]
+        chosen = [("", none.replace("_", " ")), *((one, one.replace("_", " ")) for one in option.choices)]
         return fields.choice(field, value, label, chosen, hint=hint)
     step = "whole" if option.kind == "whole" else "number"
-    return fields.number(field, value, label, hint=hint, step=step, none="needed" if needed else "default")
+    return fields.number(field, value, label, hint=hint, step=step, none=none)
 
 
 def _active(workbench: Workbench, name: str) -> AskedDesign:

@@ -112,7 +112,7 @@ def export_panel(workbench: Workbench, choice: ExportChoice) -> str:
     return (
         '<h2 id="export-title">Export</h2>'
         f'<div class="choices">{"".join(rows)}</div>'
-        f'<p class="hint" id="export-limits">{escape(target.summary)} It holds: {escape(limits)}.</p>'
+        f'<p class="hint" id="export-limits">{escape(fields.sentence(target.summary))}. It holds: {escape(limits)}.</p>'
     )
 
 

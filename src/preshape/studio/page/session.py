@@ -122,7 +122,7 @@ class Session:
                 new = edited(self.workbench, field, text)
         except (InputError, Overdue) as error:
             self.errors[field] = sentence(str(error))
-            return self.say({"errors": self.errors})
+            return self.say({"errors": {**self.errors, **panels.troubles(self.view)}})
         self.errors.pop(field, None)
         same = now - self._changed_at < TOGETHER or how == "held"
         if not same:

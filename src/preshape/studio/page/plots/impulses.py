@@ -68,7 +68,7 @@ IMPULSES = Chart(
             for series in (
                 line(f"{name}.area", f"design {name}", areaStyle={}, tooltip={"show": False}),
                 line(f"{name}.stems", f"design {name}", tooltip={"show": False}),
-                scatter(name, f"design {name}", symbolSize=12 - 2 * DESIGNS.index(name)),
+                scatter(name, f"design {name}"),
             )
         ],
         trigger="item",

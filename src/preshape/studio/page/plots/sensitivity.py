@@ -36,6 +36,7 @@ def _drawing(picture: Picture) -> Drawing:
             top = max(top, 100.0 * float(drawn.vibration.max()))
             left = ", ".join(f"{percent(mode.residual)} %" for mode in drawn.modes)
             clauses.append(f"design {name} leaves {left} at the modes")
+    highest = min(float(np.ceil(top / 25.0 - 1e-6) * 25.0), HIGHEST_SHOWN)
     ends = np.array([0.0, picture.top])
     series["limit"] = ends, np.full(2, 100.0 * INSENSITIVITY_AT)
     series["command.modes"] = gapped(
@@ -47,7 +48,7 @@ def _drawing(picture: Picture) -> Drawing:
         detail=f"dashed: modes, and {100 * INSENSITIVITY_AT:g} %",
         option={
             "xAxis": [{"max": picture.top}],
-            "yAxis": [{"max": min(float(np.ceil(top / 25.0 - 1e-6) * 25.0), HIGHEST_SHOWN)}],
+            "yAxis": [{"max": highest, "interval": 25.0 if highest <= 125.0 else 50.0}],
         },
     )
 

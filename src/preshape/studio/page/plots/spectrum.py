@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from preshape.studio.page.plots.chart import Axis, Chart, Drawing, Picture, Points, frame, line, listed
+from preshape.studio.page.plots.chart import Axis, Chart, Drawing, Picture, Points, frame, gapped, line, listed
 
 __all__ = ["SPECTRUM"]
 
@@ -43,6 +43,8 @@ def _drawing(picture: Picture) -> Drawing:
         series["measured"] = x, np.where(density > floor, density, floor)
         fitted = measured.fitted[shown]
         series["fitted"] = x, np.where(fitted > floor, fitted, np.nan)
+    low, high = 10.0 ** np.floor(np.log10(DEPTH * highest)), 10.0 ** np.ceil(np.log10(highest))
+    series["command.modes"] = gapped([[(mode.frequency, low), (mode.frequency, high)] for mode in modes])
     at = [
         f"mode {index} at {mode.frequency:.4g} hertz, damping ratio {mode.damping:.3g}"
         for index, mode in enumerate(modes, 1)
@@ -53,13 +55,7 @@ def _drawing(picture: Picture) -> Drawing:
         detail=detail,
         option={
             "xAxis": [{"max": picture.top}],
-            "yAxis": [
-                {
-                    "name": name,
-                    "min": 10.0 ** np.floor(np.log10(DEPTH * highest)),
-                    "max": 10.0 ** np.ceil(np.log10(highest)),
-                }
-            ],
+            "yAxis": [{"name": name, "min": low, "max": high}],
         },
     )
 
@@ -73,10 +69,15 @@ SPECTRUM = Chart(
             "power of the modes [-]",
             {
                 "type": "log",
-                "axisLabel": {"fontSize": 11, ":formatter": "v => v.toExponential(0).replace('e+0', 'e0')"},
+                "axisLabel": {"fontSize": 11, ":formatter": "v => v.toExponential(0).replace('e+', 'e')"},
             },
         ),
-        [line("measured", "measured"), line("fitted", "fitted modes"), line("model", "modes alone")],
+        [
+            line("command.modes", "modes", tooltip={"show": False}),
+            line("measured", "measured"),
+            line("fitted", "fitted modes"),
+            line("model", "modes alone"),
+        ],
     ),
     _drawing,
 )

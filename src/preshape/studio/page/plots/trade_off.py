@@ -65,17 +65,20 @@ def _drawing(picture: Picture) -> Drawing:
 TRADE_OFF = Chart(
     "trade_off",
     "Trade-off",
-    frame(
-        Axis("duration [ms]", {"min": 0}),
-        Axis("left at ±5 % [%]", {"type": "log", "min": LEAST_SHOWN, "max": 100}),
-        [
-            line("optimum", "shortest there is", symbol="circle", symbolSize=5),
-            scatter(
-                "families", "family", symbolSize=6, symbol="circle", label=LABEL, labelLayout={"hideOverlap": True}
-            ),
-            *(scatter(name, f"design {name}", symbolSize=12) for name in DESIGNS),
-        ],
-        trigger="item",
-    ),
+    {
+        **frame(
+            Axis("duration [ms]", {"min": 0}),
+            Axis("left at ±5 % [%]", {"type": "log", "min": LEAST_SHOWN, "max": 100}),
+            [
+                line("optimum", "shortest there is", symbol="circle", symbolSize=5),
+                scatter(
+                    "families", "family", symbolSize=6, symbol="circle", label=LABEL, labelLayout={"hideOverlap": True}
+                ),
+                *(scatter(name, f"design {name}", symbolSize=12) for name in DESIGNS),
+            ],
+            trigger="item",
+        ),
+        "grid": {"left": 50, "right": 90, "top": 10, "bottom": 36},
+    },
     _drawing,
 )

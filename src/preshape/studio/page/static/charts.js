@@ -6,6 +6,7 @@ const listeners = new Map();
 
 const DASHES = { A: "solid", B: [7, 3], C: [2, 3], D: [9, 3, 2, 3] };
 const SYMBOLS = { A: "circle", B: "rect", C: "triangle", D: "diamond" };
+const SIZES = { A: 12, B: 10, C: 8, D: 6 };
 const WIDTHS = { unshaped: 1.2, measured: 2, fitted: 1.4, command: 1, limit: 1 };
 
 export const chartNamed = (name) => known.get(name)?.chart;
@@ -76,7 +77,8 @@ export function drawCharts(charts) {
       const named = message.names?.[id];
       const data = (packed ? points(packed) : []).map((value, index) => (named ? { value, name: named[index] } : value));
       one.data.set(id, data);
-      return { id, data };
+      // Many impulses are a comb, not a crowd of marks.
+      return name === "impulses" && id in SIZES ? { id, data, symbolSize: data.length > 30 ? 3 : SIZES[id] } : { id, data };
     });
     if (!series.length && !message.option) continue;
     one.waiting = merged(one.waiting, series, message.option);
