@@ -131,7 +131,8 @@ def _change_design(workbench: Workbench, names: list[str], text: str) -> Workben
     name, part = names[0], names[1]
     old = {design.name: design for design in workbench.designs}[name]
     if part == "family":
-        new = replace(old, family=text, options=_kept(old, text))
+        bare = replace(old, family=text, options=())  # refuses what is no family
+        new = replace(bare, options=_kept(old, text))
     elif part == "band_width":
         new = replace(old, band_width=_number(text, "the band's width", "0.2"))
     elif part == "bands":
