@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import expect
 from tests.studio.browser.conftest import OpenPage, field, number, state
 
@@ -119,10 +120,9 @@ def test_dark_follows_the_system_and_the_button_overrules_it(open_page: OpenPage
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_finds_nothing(open_page: OpenPage, scheme: str) -> None:
-    axe = pytest.importorskip("axe_playwright_python.sync_playwright")
     page = open_page(f"?s={to_text(BENCH)}", color_scheme=scheme, bypass_csp=True)
     page.click("#add-design")
     field(page, "mode.0.frequency").fill("-1")
     expect(page.locator("#download")).to_be_visible()
-    found = axe.Axe().run(page).response["violations"]
+    found = Axe().run(page).response["violations"]
     assert [(one["id"], [node["html"] for node in one["nodes"]]) for one in found] == []
