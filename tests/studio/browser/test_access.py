@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import expect
@@ -81,6 +83,8 @@ def test_charts_say_in_words_what_they_show(open_page: OpenPage) -> None:
         drawing = page.locator(f'#chart-{name} [role="img"]')
         assert len(drawing.get_attribute("aria-label") or "") > 30
     assert "design A leaves 0" in (page.locator('#chart-sensitivity [role="img"]').get_attribute("aria-label") or "")
+    field(page, "mode.0.frequency").fill("21")
+    expect(page.locator("#summary")).to_have_text(re.compile(r"Design A: 9 impulses in 0\.\d+ s, at most 0 % left"))
     page.locator("#chart-impulses summary").click()
     # Three impulses a mode, convolved; and those of B.
     expect(page.locator("#chart-impulses tbody tr")).to_have_count(18)

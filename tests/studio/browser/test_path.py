@@ -91,6 +91,19 @@ def test_a_dragged_handle_changes_the_mode_and_the_shaper(open_page: OpenPage) -
     expect(field(page, "mode.0.frequency")).to_have_value(f"{frequency:.6g}")
 
 
+def test_of_a_burst_of_keys_the_last_is_shown(open_page: OpenPage) -> None:
+    page = open_page(f"?s={to_text(BENCH)}")
+    field(page, "mode.0.frequency").focus()
+    for _ in range(30):
+        page.keyboard.press("ArrowUp")
+    expect(number(page, "Left at mode 1, 23 Hz")).to_have_text("0")
+    assert state(page).modes[0].frequency == 23.0
+    drawn = view_of(state(page)).designs[1].drawn
+    assert drawn is not None
+    np.testing.assert_allclose(_points(page, "impulses", "B")[:, 1], drawn.shaper.amplitudes, rtol=1e-6)
+    assert int(page.locator("#chart-sensitivity").get_attribute("data-draws") or 0) <= 31
+
+
 def test_a_reload_and_another_tab_show_the_same_and_go_their_own_ways(open_page: OpenPage) -> None:
     first = open_page()
     field(first, "mode.0.frequency").fill("23.5")

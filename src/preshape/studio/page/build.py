@@ -72,7 +72,7 @@ def build(app: FastAPI, studio: Studio) -> None:
 
 async def _open(client: Client, session: Session, trouble: str) -> None:
     """Write the page, tell it its first picture, and listen to it."""
-    from nicegui import ui
+    from nicegui import background_tasks, ui
 
     drawing = asyncio.ensure_future(session.compute.run(VIEW_TIME, view_of, session.workbench))
     done, _ = await asyncio.wait([drawing], timeout=FIRST_PICTURE)
@@ -108,7 +108,7 @@ async def _open(client: Client, session: Session, trouble: str) -> None:
     for event, deed in DEEDS.items():
         ui.on(f"studio_{event}", partial(_heard, session, deed))
     if message:
-        asyncio.ensure_future(_later(session))
+        background_tasks.create(_later(session))
     else:
         session.become(session.workbench)
 

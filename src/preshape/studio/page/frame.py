@@ -20,7 +20,7 @@ ICON = (
 )
 
 STATUS = '<span id="status" role="status"></span>'
-SAYING = '<div class="saying" id="saying" role="status" aria-live="polite"></div>'
+SAYING = '<div class="saying" id="saying" role="status"></div><p class="for-reader" id="summary" role="status"></p>'
 
 
 def head(static: str) -> str:

@@ -13,13 +13,14 @@ from preshape.studio.page.fields import sentence
 from preshape.studio.page.measurements import ADDRESS
 from preshape.studio.page.modes_panel import drop_zone, modes_panel
 from preshape.studio.page.numbers_panel import numbers_panel
+from preshape.studio.page.plots.chart import percent
 from preshape.studio.page.trial_panel import trial_panel, trial_shape
 from preshape.workflow.workbench import Measured, View, Workbench
 
 if TYPE_CHECKING:
     from preshape.studio.page.session import Session
 
-__all__ = ["PANELS", "changed", "preview", "shapes", "troubles", "with_measured", "written"]
+__all__ = ["PANELS", "changed", "preview", "shapes", "summary", "troubles", "with_measured", "written"]
 
 PANELS = ("drop", "modes", "designs", "trial", "legend", "numbers", "export", "preview")
 
@@ -85,6 +86,19 @@ def troubles(view: View | None) -> dict[str, str]:
         f"design.{design.asked.name}": sentence(design.trouble or (design.drawn.misfit if design.drawn else ""))
         for design in view.designs
     }
+
+
+def summary(view: View | None, active: str) -> str:
+    """The design in front in one sentence, for who hears the page."""
+    found = [] if view is None else [one for one in view.designs if one.asked.name == active]
+    if not found:
+        return ""
+    drawn = found[0].drawn
+    if drawn is None:
+        return f"Design {active} has no shaper: {found[0].trouble}"
+    left = percent(max(mode.residual for mode in drawn.modes))
+    size = f"{len(drawn.shaper)} impulses in {drawn.shaper.duration:.4g} s"
+    return f"Design {active}: {size}, at most {left} % left at the modes."
 
 
 def with_measured(workbench: Workbench, measured: Measured | None, *, only_clear: bool = True) -> Workbench:

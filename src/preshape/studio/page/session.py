@@ -32,6 +32,9 @@ from preshape.workflow.workbench import (
 
 __all__ = ["Session"]
 
+SLOW = 0.4
+"""Seconds after which a page says that it computes."""
+
 SHORT_QUIET, QUIET = 0.25, 1.0
 """Seconds without a change after which the export is written, and the trade-off computed."""
 
@@ -189,6 +192,7 @@ class Session:
         if not self._drawing:
             self._drawing = True
             _soon(self._draw())
+            _soon(self._tell_if_slow())
 
     async def _draw(self) -> None:
         """Draw the latest state; what came in between is drawn once, with it."""
@@ -210,6 +214,11 @@ class Session:
             self._drawing = False
         _soon(self.show_export())
         _soon(self.draw_trade_off())
+
+    async def _tell_if_slow(self) -> None:
+        await asyncio.sleep(SLOW)
+        if self._drawing:
+            self.say({"status": "Computing …"})
 
     async def show_export(self) -> None:
         """Write the export's preview anew; some targets take longer than a picture."""
@@ -263,6 +272,7 @@ class Session:
             "link": to_text(self.workbench),
             "measurement": self.measurement,
             "status": "",
+            "summary": panels.summary(self.view, self.active),
             "can": {"undo": self.history.can_undo, "redo": self.history.can_redo},
             "errors": {**self.errors, **panels.troubles(self.view)},
         }

@@ -26,10 +26,17 @@ function receive(message) {
   if (message.handles) placeHandles(message.handles);
   if (message.link !== undefined) keepLink(message.link, message.measurement);
   if (message.status !== undefined) document.getElementById("status").textContent = message.status;
-  if (message.title) document.title = message.title;
+  if (message.summary !== undefined) summarise(message.summary);
   if (message.can) for (const [id, can] of Object.entries(message.can)) enable(document.getElementById(id), can);
   if (message.say) say(message.say);
-  if (message.focus) document.querySelector(message.focus)?.focus();
+}
+
+// Read out when the changes have come to rest, not at each of them.
+let resting;
+function summarise(sentence) {
+  clearTimeout(resting);
+  const place = document.getElementById("summary");
+  resting = setTimeout(() => place.textContent !== sentence && (place.textContent = sentence), 900);
 }
 
 // A panel is written anew only when its shape changes; whoever had the focus keeps it.
