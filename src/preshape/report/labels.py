@@ -31,7 +31,12 @@ LEADER_FROM = 14.0
 """A label farther away than this, in points, is tied to its point by a line."""
 
 
-def label_points(axes: Axes, labels: Sequence[tuple[float, float, str]], size: float = 8.0) -> None:
+def label_points(
+    axes: Axes,
+    labels: Sequence[tuple[float, float, str]],
+    size: float = 8.0,
+    avoid: Sequence[tuple[float, float]] = (),
+) -> None:
     """Write the labels, each as near its point as there is room.
 
     Parameters
@@ -42,6 +47,8 @@ def label_points(axes: Axes, labels: Sequence[tuple[float, float, str]], size: f
         Points in data coordinates.
     size : float
         Of the type, in points.
+    avoid : sequence of (x, y)
+        Other points that no label may hide; nor does one hide the legend of the axes.
     """
     figure = axes.get_figure(root=True)
     assert figure is not None
@@ -51,6 +58,11 @@ def label_points(axes: Axes, labels: Sequence[tuple[float, float, str]], size: f
     edges = axes.get_window_extent()
     frame = np.array([edges.x0, edges.y0, edges.x1, edges.y1]) * scale
     taken = [np.array([x - POINT, y - POINT, x + POINT, y + POINT]) for x, y in centres]
+    others = [axes.transData.transform(point) * scale for point in avoid]
+    taken += [np.array([x - POINT, y - POINT, x + POINT, y + POINT]) for x, y in others]
+    if (legend := axes.get_legend()) is not None:
+        covered = legend.get_window_extent()
+        taken.append(np.array([covered.x0, covered.y0, covered.x1, covered.y1]) * scale)
     for (x, y, text), centre in zip(labels, centres, strict=True):
         box = np.array([LETTER * size * len(text), LINE * size])
         place, offset = _place(centre, box, taken, frame)
