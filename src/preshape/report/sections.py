@@ -25,7 +25,7 @@ Export: TypeAlias = PasteText | tuple[str, str]
 """What goes to a controller: a text to paste, or its title and its text."""
 
 AGREE = 1e-9
-"""Prediction and simulation that differ by less than this part of the unshaped vibration [-] are the same: a billionth."""
+"""Prediction and simulation that differ by less than this part of the unshaped vibration, a billionth, are the same."""
 
 SHOWN_IMPULSES = 40
 """Of longer shapers the report shows the first."""
