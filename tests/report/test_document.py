@@ -220,6 +220,14 @@ def test_a_simulated_machine_is_shown_with_its_numbers() -> None:
     assert f"{result.motions['load'][0].residual:.3g}" in page
 
 
+def test_a_machine_of_many_modes_has_a_report_too() -> None:
+    """Convolved, ZVD for twenty modes would have 3^20 impulses: nothing is designed only to be compared with."""
+    modes = [(1.0 + 0.7 * k, 0.01) for k in range(20)]
+    page = "".join(Page(as_html(design_report(modes, design.zvd(modes[0])))).text)
+    assert all(f"{frequency:.4g} Hz, damping 0.01" in page for frequency, _ in modes)
+    assert "Shapers for these modes" not in page
+
+
 def test_negative_impulses_and_boxes_are_drawn_inside_the_figure() -> None:
     from preshape.report.panels import impulses_panel
 

@@ -83,6 +83,7 @@ def test_a_design_comes_out_of_its_report_bit_for_bit(
     with pytest.raises(SystemExit) as stop:
         main(["design", *options, "--json", str(saved), "--report", str(report)])
     assert stop.value.code == 0
+    assert read_record(report)[0].command_line.startswith(f"preshape design --family {options[1]} ")
     with pytest.raises(SystemExit) as stop:
         main(["rerun", str(report), "--out", str(tmp_path / "again")])
     out = capsys.readouterr().out
@@ -159,6 +160,8 @@ FORGERIES: dict[str, tuple[Callable[[dict[str, Any]], None], str]] = {
     "another option": (lambda r: r["job"].update(command="rm -rf"), "damaged or was changed"),
     "text for a number": (lambda r: r["job"].update(tolerance="__import__('os')"), "damaged or was changed"),
     "tolerance": (lambda r: r["job"].update(tolerance=7.0), r"outside \(0, 1\)"),
+    "no day": (lambda r: r.update(made="2026-02-31T00:00:00Z"), "record was changed"),
+    "letters that move the screen": (lambda r: r["inputs"][0].update(name="\x1b[2J.csv"), "was changed"),
     "no date": (lambda r: r.update(made="today"), "record was changed"),
     "another schema": (lambda r: r.update(schema="preshape/report/9"), "preshape/report/9"),
     "no shaper": (lambda r: r.update(shaper={"times": [0.0]}), "schema None"),
