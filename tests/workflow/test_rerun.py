@@ -64,20 +64,19 @@ def test_a_calibration_comes_out_of_its_report_bit_for_bit(folder: Path, tmp_pat
 
 
 @pytest.mark.parametrize(
-    "options",
+    ("kind", "options"),
     [
-        ["--family", "direct", "--mode", "0.2", "--mode", "0.26:0.01"],
-        ["--family", "mesh", "--mode", "1:0.02", "--dt", "0.05"],
-        ["--family", "convolved", "--base", "ei", "--tolerance", "0.1", "--mode", "30:0.05", "--mode", "55"],
-        ["--family", "zvd", "--mode", "40", "--dt", "0.001"],
-        ["--family", "sd_zv", "--mode", "5", "--deflection-ratio", "0.4", "--form", "box"],
-        ["--family", "si", "--band", "0.9:1.1:0:0.02", "--tolerance", "0.05"],
-        ["--family", "ei", "--band", "40:60"],
+        ("html", ["--family", "direct", "--mode", "0.2", "--mode", "0.26:0.01"]),
+        ("pdf", ["--family", "mesh", "--mode", "1:0.02", "--dt", "0.05"]),
+        ("html", ["--family", "convolved", "--base", "ei", "--tolerance", "0.1", "--mode", "30:0.05", "--mode", "55"]),
+        ("html", ["--family", "zvd", "--mode", "4", "--dt", "0.001"]),
+        ("pdf", ["--family", "sd_zv", "--mode", "5", "--deflection-ratio", "0.4", "--form", "box"]),
+        ("html", ["--family", "si", "--band", "0.9:1.1:0:0.02", "--tolerance", "0.05"]),
+        ("html", ["--family", "ei", "--band", "4:6"]),
     ],
 )
-@pytest.mark.parametrize("kind", ["html", "pdf"])
 def test_a_design_comes_out_of_its_report_bit_for_bit(
-    options: list[str], kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    kind: str, options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     report, saved = tmp_path / f"report.{kind}", tmp_path / "shaper.json"
     with pytest.raises(SystemExit) as stop:
