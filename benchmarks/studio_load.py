@@ -40,10 +40,11 @@ def main() -> None:
         finally:
             server.terminate()
             server.wait()
+        page = f"page p50 {_percentile(pages, 50):.0f} ms, p99 {_percentile(pages, 99):.0f} ms" if pages else "no page"
         print(
             f"{CLIENTS} clients, {kind}: {len(views)} views, p50 {_percentile(views, 50):.0f} ms, p99 "
-            f"{_percentile(views, 99):.0f} ms, worst {max(views):.0f} ms; page p50 {_percentile(pages, 50):.0f} ms, "
-            f"p99 {_percentile(pages, 99):.0f} ms; {problems} refused (claim: p99 under 500 ms, processes)",
+            f"{_percentile(views, 99):.0f} ms, worst {max(views):.0f} ms; {page}; {problems} refused (claim: p99 under "
+            "500 ms, processes)",
             flush=True,
         )
 
@@ -64,7 +65,8 @@ async def _crowd(address: str) -> tuple[list[float], list[float], int]:
             await asyncio.sleep(rng.uniform(0.0, RAMP))
             ended = time.perf_counter() + SECONDS
             answer, took = await _timed(client.get("/"))
-            pages.append(took)
+            if answer.status_code == 200:  # the API can be served without the page
+                pages.append(took)
             family = FAMILIES[number % len(FAMILIES)]
             while time.perf_counter() < ended:
                 await asyncio.sleep(rng.expovariate(1.0 / THINKING))

@@ -18,6 +18,8 @@ from tests.workflow.recordings import klipper_text, recording
 
 import preshape
 from preshape.cli.main import preshape as command_line
+from preshape.report import DesignJob, as_html
+from preshape.workflow import asked_design_report, designed
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -67,6 +69,8 @@ def test_console_lines_are_accepted(line: str, tmp_path: Path, monkeypatch: pyte
         (tmp_path / name).write_bytes((ROOT / "examples" / "data" / file).read_bytes())
     for name, frequency in (("shaper.json", 8.7), ("x.json", 38.0), ("y.json", 61.0)):
         preshape.design.zvd((frequency, 0.024)).save(tmp_path / name)
+    job = DesignJob(family="zvd", modes=((47.3, 0.05),))
+    (tmp_path / "report.html").write_text(as_html(asked_design_report(job, designed(job))))
     for name, shaper in (("before.csv", None), ("after.csv", preshape.design.zvd((46.0, 0.06)))):
         (tmp_path / name).write_text(klipper_text(recording(shaper)[0]))
     result = CliRunner().invoke(command_line, shlex.split(line)[1:], catch_exceptions=False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import traceback
 from importlib import import_module
+from typing import Any
 
 import click
 
@@ -32,6 +33,12 @@ INTERRUPTED = 130
 
 
 class _Commands(click.Group):
+    def make_context(
+        self, info_name: str | None, args: list[str], parent: click.Context | None = None, **extra: Any
+    ) -> click.Context:
+        """The context, which keeps what was typed: reports say it."""
+        return super().make_context(info_name, args, parent, obj=list(args), **extra)
+
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
 
@@ -74,8 +81,7 @@ def main(arguments: list[str] | None = None) -> None:
     from preshape.errors import InputError
 
     try:
-        given = sys.argv[1:] if arguments is None else arguments
-        code = preshape.main(args=given, standalone_mode=False, obj=given)
+        code = preshape.main(args=arguments, standalone_mode=False)
     except click.UsageError as error:
         error.show()
         code = 2

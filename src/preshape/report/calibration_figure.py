@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from preshape.report.calibration import Calibration
 from preshape.report.figures import ACCENT, MUTED, SECOND, SERIES, SOFT, new_figure, tidy
-from preshape.report.panels import impulses_panel, mark_modes, mark_tolerance, move_panel
+from preshape.report.panels import NAME_WIDTH, impulses_panel, mark_modes, mark_tolerance, move_panel
 from preshape.report.tables import time_unit
 from preshape.vibration import residual_vibration
 
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["calibration_figure"]
+
+LEGEND_FROM = 0.68
+"""The legend stands right of this part of the frequency axis, unless a mode is named there."""
 
 RUNNERS_UP = (SERIES[1], SERIES[3])
 """Looks of the other candidates that are drawn beside the chosen one; dots are the tolerance's."""
@@ -77,15 +80,17 @@ def _spectrum(axes: Axes, calibration: Calibration) -> None:
     v = residual_vibration(chosen.shaper, f, damping)
     axes.plot(f, v, color=ACCENT, linewidth=2.4, label=f"left by {chosen.name} (at damping {damping:.3f})")
     mark_tolerance(axes, calibration.tolerance, high, f"{100.0 * calibration.tolerance:g} %")
-    mark_modes(axes, [mode.mode for mode in calibration.modes])
-    axes.set_xlim(0.0, high)
+    mark_modes(axes, [mode.mode for mode in calibration.modes], high)
     tidy(
         axes,
         "frequency [Hz]",
         "of the highest power / of the vibration",
         "What vibrates, and how much of it each shaper leaves",
     )
-    axes.legend(fontsize=8.5, loc="upper right", frameon=True, framealpha=0.9, edgecolor="white")
+    place: dict[str, Any] = {"loc": "upper right"}
+    if any(mode.mode.frequency > (LEGEND_FROM - NAME_WIDTH) * high for mode in calibration.modes):
+        place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.17), "ncols": 2}
+    axes.legend(fontsize=8.5, frameon=True, framealpha=0.9, edgecolor="white", **place)
 
 
 def _highest_shown(calibration: Calibration) -> float:

@@ -54,7 +54,7 @@ SERIES: tuple[tuple[str, Line, float], ...] = (
     (INK, ":", 1.9),
     (GREEN, "-.", 1.8),
     (WINE, (0, (6, 1, 1, 1, 1, 1)), 1.6),
-    (MUTED, (0, (8, 2)), 1.6),
+    (MUTED, (0, (8, 2)), 1.4),
 )
 """Colour, line and width of the curves of one figure, in order: each has a line of its own, for grey print, and the
 colours were chosen to stay apart for people who do not see red, green or blue (tests/report/test_figure_style.py)."""

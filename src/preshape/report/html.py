@@ -17,10 +17,10 @@ STYLE = """
 * { box-sizing: border-box; }
 body { font: 15px/1.45 system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; color: var(--ink);
   max-width: 62rem; margin: 1.5rem auto; padding: 0 1rem; background: #fff; overflow-wrap: anywhere; }
-h1 { font-size: 1.45rem; margin: 0 0 .2rem; color: var(--accent); }
-h2 { font-size: 1.05rem; margin: 1.6rem 0 .4rem; }
+h1 { font-size: 1.45em; margin: 0 0 .2rem; color: var(--accent); }
+h2 { font-size: 1.05em; margin: 1.6rem 0 .4rem; }
 p { margin: .3rem 0; }
-.lead { font-size: 1.05rem; }
+.lead { font-size: 1.07em; }
 .label { font-weight: 600; margin-top: .7rem; }
 .warning { border-left: 5px solid var(--warn); background: #fff4ec; padding: .5rem .8rem; margin: .4rem 0; }
 .tables { overflow-x: auto; margin: .3rem 0; }
@@ -32,9 +32,9 @@ tr.chosen td { font-weight: 700; color: var(--accent); }
 tr.excluded td { color: #767676; }
 figure { margin: .5rem 0; overflow-x: auto; }
 svg { width: 100%; height: auto; }
-pre { background: #f5f5f5; padding: .4rem .7rem; margin: .2rem 0 .6rem; overflow-x: auto; font-size: .85rem;
+pre { background: #f5f5f5; padding: .4rem .7rem; margin: .2rem 0 .6rem; overflow-x: auto; font-size: .85em;
   overflow-wrap: normal; }
-footer { color: var(--soft); font-size: .85rem; margin-top: 1.4rem; border-top: 1px solid var(--line);
+footer { color: var(--soft); font-size: .85em; margin-top: 1.4rem; border-top: 1px solid var(--line);
   padding-top: .5rem; }
 @media (max-width: 40rem) { figure svg { min-width: 40rem; } }
 @media print { body { margin: 0; max-width: none; font-size: 11px; } h2 { margin-top: .8rem; break-after: avoid; }
@@ -48,7 +48,7 @@ def as_html(document: Document) -> str:
     Parameters
     ----------
     document : Document
-        From :func:`preshape.workflow.design_report` or :func:`preshape.workflow.calibration_report`.
+        From :func:`preshape.workflow.design_report` or :func:`preshape.report.calibration_document`.
 
     Returns
     -------

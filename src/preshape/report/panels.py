@@ -17,13 +17,24 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["impulses_panel", "mark_modes", "mark_tolerance", "move_panel", "shown_part", "simulated_figure"]
+__all__ = [
+    "NAME_WIDTH",
+    "impulses_panel",
+    "mark_modes",
+    "mark_tolerance",
+    "move_panel",
+    "shown_part",
+    "simulated_figure",
+]
 
 FEW = 6
 """Of so many impulses each carries its amplitude."""
 
-LABELS_AT = (1.12, 1.3)
-"""Heights of the modes' names, in turn, over a curve that ends at 1."""
+ROWS_FROM, ROW = 1.11, 0.17
+"""Where the rows of the modes' names begin over curves that end at 1, and how high one is."""
+
+NAME_WIDTH = 0.12
+"""Of a mode's name, as a part of the axis."""
 
 
 def impulses_panel(axes: Axes, shaper: Shaper) -> None:
@@ -101,20 +112,38 @@ def simulated_figure(shaper: Shaper, move: SimulatedMove) -> Figure:
     return figure
 
 
-def mark_modes(axes: Axes, modes: Iterable[Mode]) -> None:
-    """A line at each mode with its name above 100 %, which is where the vertical axis of part ends."""
-    for number, mode in enumerate(sorted(modes, key=lambda mode: mode.frequency)):
+def mark_modes(axes: Axes, modes: Iterable[Mode], end: float) -> None:
+    """A line at each mode with its name above 100 %, in rows so that none hides another.
+
+    Parameters
+    ----------
+    axes : Axes
+        From 0 to `end` [Hz]; the vertical axis is one of parts, and is set here.
+    modes : iterable of Mode
+        In any order.
+    end : float
+        [Hz]
+    """
+    taken: list[float] = []
+    for mode in sorted(modes, key=lambda mode: mode.frequency):
+        before = mode.frequency > (1.0 - NAME_WIDTH) * end
+        start = mode.frequency - (NAME_WIDTH * end if before else 0.0)
+        row = next((number for number, free in enumerate(taken) if free <= start), len(taken))
+        taken[row : row + 1] = [start + NAME_WIDTH * end]
         axes.axvline(mode.frequency, color=INK, linewidth=1.0)
         axes.annotate(
             f"{mode.frequency:.4g} Hz\ndamping {mode.damping:.3f}",
-            (mode.frequency, LABELS_AT[number % 2]),
-            xytext=(4, 0),
+            (mode.frequency, ROWS_FROM + ROW * row),
+            xytext=(-4 if before else 4, 0),
             textcoords="offset points",
+            ha="right" if before else "left",
             va="center",
             fontsize=8.5,
             color=INK,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
         )
-    axes.set_ylim(0.0, 1.42)
+    axes.set_xlim(0.0, end)
+    axes.set_ylim(0.0, ROWS_FROM - 0.03 + ROW * max(2, len(taken)))
     axes.set_yticks([0.0, 0.25, 0.5, 0.75, 1.0], ["0", "25 %", "50 %", "75 %", "100 %"])
 
 

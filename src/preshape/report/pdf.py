@@ -51,7 +51,7 @@ def as_pdf(document: Document) -> bytes:
     Parameters
     ----------
     document : Document
-        From :func:`preshape.workflow.design_report` or :func:`preshape.workflow.calibration_report`.
+        From :func:`preshape.workflow.design_report` or :func:`preshape.report.calibration_document`.
 
     Raises
     ------

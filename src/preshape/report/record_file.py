@@ -6,12 +6,14 @@ import hashlib
 import os
 import re
 import stat
+import time
 import zlib
 from pathlib import Path
 
 import msgspec
 
 from preshape.errors import InputError
+from preshape.report.document import printable
 from preshape.report.html import RECORD_TYPE
 from preshape.report.record import REPORT_SCHEMA, Record, RecordedFile
 
@@ -28,10 +30,16 @@ LARGEST_INPUT = 200_000_000
 
 OPENING, CLOSING = f'<script type="{RECORD_TYPE}">'.encode(), b"</script>"
 
-ATTACHED = re.compile(rb"<<(?:(?!endobj|stream).){0,400}?/Type\s*/EmbeddedFile.{0,400}?>>\s*stream\r?\n", re.DOTALL)
-"""The beginning of an attachment, as Typst writes it."""
+ATTACHED, STREAM = b"/Type/EmbeddedFile", re.compile(rb"stream\r?\n")
+"""How Typst names an attachment, and what follows on its description."""
 
-DAY_AND_TIME = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ")
+DESCRIPTION = 1_000
+"""Bytes within which the attachment begins."""
+
+DAY_AND_TIME = "%Y-%m-%dT%H:%M:%SZ"
+
+LONGEST_NAME = 255
+"""Bytes that a file system takes."""
 
 DIGEST = re.compile(r"[0-9a-f]{64}")
 
@@ -50,10 +58,12 @@ def read_record(path: str | os.PathLike[str]) -> tuple[Record, bytes]:
     try:
         record = msgspec.json.decode(text, type=Record)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise InputError(f"{source}: its record is damaged or was changed ({error}): take the original.") from None
+        raise InputError(
+            f"{source}: its record is damaged or was changed ({printable(str(error))}): take the original."
+        ) from None
     if record.schema != REPORT_SCHEMA:
         raise InputError(f"{source}: its record is {record.schema!r}, and this version reads {REPORT_SCHEMA!r}.")
-    if not DAY_AND_TIME.fullmatch(record.made) or "preshape" not in record.versions:
+    if not _is_date(record.made) or "preshape" not in record.versions:
         raise InputError(f"{source}: its record was changed: it does not say when and by which preshape it was made.")
     for one in record.inputs:
         _check(source, one)
@@ -112,15 +122,16 @@ def _from_html(source: Path, whole: bytes) -> bytes:
 def _from_pdf(source: Path, whole: bytes) -> bytes:
     if not whole.rstrip().endswith(b"%%EOF"):
         raise InputError(f"{source} is truncated: take the original report.")
-    found = [match for match in ATTACHED.finditer(whole)]
-    if len(found) != 1:
+    count, place = whole.count(ATTACHED), whole.find(ATTACHED)
+    begin = STREAM.search(whole, place, place + DESCRIPTION)
+    if count != 1 or begin is None:
         raise InputError(
-            f"{source} holds {len(found)} attachments, and a report of preshape holds one: it is another PDF, or was "
+            f"{source} holds {count} attachments, and a report of preshape holds one: it is another PDF, or was "
             "written anew by another program."
         )
     stream = zlib.decompressobj()
     try:
-        text = stream.decompress(whole[found[0].end() :], LARGEST_RECORD)
+        text = stream.decompress(whole[begin.end() :], LARGEST_RECORD)
     except zlib.error as error:
         raise InputError(f"{source}: its record is damaged ({error}): take the original report.") from None
     if not stream.eof:
@@ -128,9 +139,22 @@ def _from_pdf(source: Path, whole: bytes) -> bytes:
     return text
 
 
+def _is_date(text: str) -> bool:
+    """Whether it is a date as reports write it, and in the calendar."""
+    try:
+        return time.strftime(DAY_AND_TIME, time.strptime(text, DAY_AND_TIME)) == text
+    except ValueError:
+        return False
+
+
 def _check(source: Path, one: RecordedFile) -> None:
-    plain = one.name not in ("", ".", "..") and not set(one.name) & set("/\\\0\n") and len(one.name.encode()) <= 255
-    if not (plain and 0 <= one.size <= LARGEST_INPUT and DIGEST.fullmatch(one.sha256)):
+    named = one.name not in ("", ".", "..") and printable(one.name) == one.name and not set(one.name) & set("/\\\n\t")
+    if not (
+        named
+        and len(one.name.encode()) <= LONGEST_NAME
+        and 0 <= one.size <= LARGEST_INPUT
+        and DIGEST.fullmatch(one.sha256)
+    ):
         raise InputError(
             f"{source}: the input {one.name!r} of {one.size} bytes in its record is none that preshape wrote: the "
             "report was changed."

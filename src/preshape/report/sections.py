@@ -25,7 +25,7 @@ Export: TypeAlias = PasteText | tuple[str, str]
 """What goes to a controller: a text to paste, or its title and its text."""
 
 AGREE = 1e-9
-"""Prediction and simulation that differ by less than this part of the unshaped vibration [-] are the same."""
+"""Prediction and simulation that differ by less than this part of the unshaped vibration, a billionth, are the same."""
 
 SHOWN_IMPULSES = 40
 """Of longer shapers the report shows the first."""
@@ -146,7 +146,7 @@ def _agreement(move: SimulatedMove) -> str:
         return total
     largest = float(np.abs(move.simulated - move.predicted)[excited].max())
     if largest < AGREE:
-        verdict = f"The two agree: they differ by less than {AGREE:.0e} of the unshaped vibration."
+        verdict = "The two agree: they differ by less than a billionth of the unshaped vibration."
     else:
         verdict = f"The two differ by up to {100.0 * largest:.2g} % of the unshaped vibration: trust neither."
     return f"{verdict} {total}"

@@ -10,6 +10,7 @@ from preshape.workflow.executed import SpectrumLeft, executed_shaper, left_of_sp
 from preshape.workflow.gcode import ShapedGcode, shape_gcode
 from preshape.workflow.identify_plant import identify_plant
 from preshape.workflow.read_command import read_command
+from preshape.workflow.record import new_record
 from preshape.workflow.rerun import Rerun, rerun
 from preshape.workflow.save import SavedCalibration, save_calibration
 from preshape.workflow.save_export import SavedExport, save_export
@@ -41,6 +42,7 @@ __all__ = [
     "executed_shaper",
     "identify_plant",
     "left_of_spectrum",
+    "new_record",
     "read_command",
     "recipe",
     "rerun",

@@ -23,7 +23,7 @@ PRINTERS = (10.0, 200.0)
 """Frequencies [Hz] of machines that a firmware with settings for shapers may drive."""
 
 MOST_MODES = 6
-"""Of more modes the shortest shaper is not designed only to be compared with."""
+"""Of more modes nothing is designed only to be compared with: convolved, ZVD has three impulses for each mode's one."""
 
 
 def design_report(
@@ -120,8 +120,10 @@ def asked_design_report(
 
 def _usual_shapers(modes: Modes, shaper: Shaper) -> tuple[tuple[str, Shaper], ...]:
     """ZV, ZVD and EI for the same modes, and the shortest for all at once; without what `shaper` is already."""
+    if len(modes) > MOST_MODES:
+        return ()
     found = [(name, family) for name in USUAL if (family := _if_any(modes, name)) is not None]
-    if 1 < len(modes) <= MOST_MODES:
+    if len(modes) > 1:
         found.append(("shortest for all modes at once", direct(modes, order=0)))
     return tuple((name, one) for name, one in found if one != shaper)
 

@@ -175,4 +175,4 @@ def _changed(then: dict[str, str]) -> tuple[tuple[str, str, str], ...]:
     now = current_versions()
     names = dict.fromkeys([*then, *now])
     rows = [(name, then.get(name, "none"), now.get(name, "none")) for name in names]
-    return tuple((name, printable(old), new) for name, old, new in rows if old != new)
+    return tuple((printable(name), printable(old), new) for name, old, new in rows if old != new)

@@ -73,8 +73,8 @@ def test_a_carried_load_bends_by_the_acceleration_and_comes_to_rest() -> None:
     accelerations = (np.diff(d, 2) + np.diff(u, 2)) / h**2
     rates = (d[2:] - d[:-2]) / (2.0 * h)
     left_over = accelerations + 2.0 * mode.damping * mode.omega * rates + mode.omega**2 * d[1:-1]
-    smooth = np.abs(np.diff(u, 2) / h**2 - np.median(np.diff(u, 2) / h**2)) < np.inf
-    assert np.median(np.abs(left_over[smooth])) < 1e-3 * np.abs(accelerations).max()
+
+    assert np.median(np.abs(left_over)) < 1e-3 * np.abs(accelerations).max()
     np.testing.assert_allclose(drawn.move.position, u + d, atol=1e-12)
     assert abs(d[-1]) < 1e-9 and drawn.move.position[-1] == pytest.approx(0.4, abs=1e-9)
     assert np.abs(d).max() <= drawn.move.peak_deflection * (1.0 + 1e-9)

@@ -16,7 +16,7 @@ from preshape.profile import Profile
 from preshape.shaper import Shaper
 from preshape.workflow.workbench.state import Move, Plant
 
-__all__ = ["STEP", "Response", "motion_of", "profile_of", "response", "times_until"]
+__all__ = ["STEP", "Response", "motion_of", "profile_of", "read_only", "response", "times_until"]
 
 REMEMBERED = 64
 
@@ -78,7 +78,13 @@ def times_until(end_time: float, modes: tuple[Mode, ...]) -> NDArray[np.float64]
     slowest, fastest = (choose(mode.frequency for mode in modes) for choose in (min, max))
     end = end_time + TAIL_PERIODS / slowest
     wanted = math.ceil(min(POINTS_PER_PERIOD * fastest * end, MOST_POINTS))
-    return np.linspace(0.0, end, max(wanted, FEWEST_POINTS) + 1)
+    return read_only(np.linspace(0.0, end, max(wanted, FEWEST_POINTS) + 1))
+
+
+def read_only(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The array, which is remembered and shown to several, closed to writing."""
+    values.flags.writeable = False
+    return values
 
 
 @lru_cache(maxsize=REMEMBERED)
@@ -110,9 +116,9 @@ def response(modes: tuple[Mode, ...], plant: Plant, move: Move, shaper: Shaper |
     peak, residual = _extremes(modes, plant, move, shaper)
     times = times_until(end_time, modes)
     return Response(
-        command=command(times),
-        position=motion("position", times),
-        deflection=motion("deflection", times),
+        command=read_only(command(times)),
+        position=read_only(motion("position", times)),
+        deflection=read_only(motion("deflection", times)),
         peak_deflection=peak,
         residual=residual,
         end_time=motion.end_time,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from preshape.mode import Mode
 from preshape.shaper import Shaper
 from preshape.vibration import ShaperZero, insensitivity, residual_vibration, zeros_near
-from preshape.workflow.workbench.curves import STEP, Response, profile_of, response, times_until
+from preshape.workflow.workbench.curves import STEP, Response, profile_of, read_only, response, times_until
 from preshape.workflow.workbench.solve import misfit, solved
 from preshape.workflow.workbench.state import AskedDesign, Workbench
 
@@ -188,12 +188,13 @@ def _axis(modes: tuple[Mode, ...]) -> tuple[NDArray[np.float64], NDArray[np.floa
     ordered = sorted(modes, key=lambda mode: mode.frequency)
     own = np.array([mode.frequency for mode in ordered])
     frequencies = np.union1d(np.linspace(0.0, HIGHEST * own[-1], FREQUENCIES + 1), own)
-    return frequencies, np.interp(frequencies, own, [mode.damping for mode in ordered])
+    dampings = np.interp(frequencies, own, [mode.damping for mode in ordered])
+    return read_only(frequencies), read_only(dampings)
 
 
 @lru_cache(maxsize=REMEMBERED)
 def _curve(shaper: Shaper, modes: tuple[Mode, ...]) -> NDArray[np.float64]:
-    return residual_vibration(shaper, *_axis(modes))
+    return read_only(residual_vibration(shaper, *_axis(modes)))
 
 
 @lru_cache(maxsize=REMEMBERED)
