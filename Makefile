@@ -40,6 +40,7 @@ figures: $(DEV)
 	$(BIN)/python docs/figures/make_figures.py
 	$(BIN)/python docs/figures/make_animation.py
 	$(BIN)/python docs/figures/make_numbers.py
+	$(BIN)/python docs/figures/make_screenshots.py
 
 bench: $(DEV)
 	$(BIN)/python benchmarks/run_all.py

@@ -20,6 +20,8 @@ import preshape
 import preshape.export
 import preshape.workflow
 from preshape.cli.main import preshape as command_line
+from preshape.report import DesignJob, as_html
+from preshape.workflow import asked_design_report, designed
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -79,6 +81,8 @@ def test_console_lines_are_accepted(line: str, tmp_path: Path, monkeypatch: pyte
         preshape.design.zvd((frequency, 0.024)).save(tmp_path / name)
     exported = preshape.export.render(preshape.design.zvd((8.7, 0.024)), "c", dt=0.001, name="gantry_x")
     preshape.workflow.save_export(exported, tmp_path / "firmware")
+    job = DesignJob(family="zvd", modes=((47.3, 0.05),))
+    (tmp_path / "report.html").write_text(as_html(asked_design_report(job, designed(job))))
     for name, shaper in (("before.csv", None), ("after.csv", preshape.design.zvd((46.0, 0.06)))):
         (tmp_path / name).write_text(klipper_text(recording(shaper)[0]))
     result = CliRunner().invoke(command_line, shlex.split(line)[1:], catch_exceptions=False)
