@@ -2,6 +2,8 @@
 
 from preshape.report.calibration import FREQUENCY_ERROR, Calibration, Candidate, MeasuredFile, SimulatedMove
 from preshape.report.calibration_figure import calibration_figure
+from preshape.report.campaign import CampaignPanel, CampaignSummary, Cloud, Curves, Field
+from preshape.report.campaign_figure import campaign_figure
 from preshape.report.comparison import Comparison, Contender, Kind, LeftOut
 from preshape.report.comparison_figure import comparison_figure
 from preshape.report.comparison_table import (
@@ -41,13 +43,18 @@ __all__ = [
     "LESS",
     "MORE",
     "NOISE",
+    "Curves",
     "Estimate",
+    "Field",
     "ModeVerdict",
     "Ringing",
     "Verification",
     "FREQUENCY_ERROR",
     "Calibration",
+    "CampaignPanel",
+    "CampaignSummary",
     "Candidate",
+    "Cloud",
     "Comparison",
     "Contender",
     "Kind",
@@ -62,6 +69,7 @@ __all__ = [
     "as_svg",
     "calibration_figure",
     "calibration_page",
+    "campaign_figure",
     "candidate_table",
     "comparison_figure",
     "comparison_sentences",
