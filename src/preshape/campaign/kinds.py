@@ -1,4 +1,4 @@
-"""The kinds of campaign there are, by the table of a campaign file that describes each. A new one is a file and a line."""
+"""The kinds of campaign there are, by their table in a campaign file. A new one is a file and a line here."""
 
 from __future__ import annotations
 

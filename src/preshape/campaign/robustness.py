@@ -224,6 +224,6 @@ def _sampled(move: MoveSettings) -> NDArray[np.float64]:
         raise InputError(f"the move takes {count} samples of {move.dt:g} s: give a larger dt.")
     samples = move.dt * np.arange(count)
     if move.between == "straight":
-        return np.interp(samples, times, values, left=0.0 if times[0] > 0.0 else None)
+        return np.asarray(np.interp(samples, times, values, left=0.0 if times[0] > 0.0 else None))
     at = np.searchsorted(times, samples + 1e-6 * move.dt, side="right") - 1
-    return np.where(at < 0, 0.0, values[np.maximum(at, 0)])
+    return np.asarray(np.where(at < 0, 0.0, values[np.maximum(at, 0)]))

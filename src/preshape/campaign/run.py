@@ -189,7 +189,7 @@ def _summed_up(store: Store, kind: Kind, damaged: list[Path]) -> tuple[CampaignS
     if store.others:
         names = ", ".join(path.name for path in store.others)
         notes.append(
-            f"The inputs have changed since an earlier run: its points stay in {names}, and none is used here."
+            f"the inputs have changed since an earlier run: its points stay in {names}, and none is used here."
         )
     failures = tuple(Counter(results.failed.values()).most_common())
     files = {RESULTS: written_table(table)}

@@ -1,4 +1,4 @@
-"""A shaper table for scheduling: modes and the direct shaper of every row, as `preshape.stream.load_schedule` takes it."""
+"""A shaper table for scheduling: modes and direct shaper of every row, which `preshape.stream.load_schedule` reads."""
 
 from __future__ import annotations
 
@@ -22,6 +22,9 @@ __all__ = ["ScheduleSettings", "ScheduleTable"]
 
 MOST_ROWS = 50_000
 """A row with its proof takes five thousand bytes of the file."""
+
+ORDER = 1
+"""Of a direct shaper and of a schedule, unless given."""
 
 WRITTEN = "schedule.json"
 
@@ -124,7 +127,7 @@ class ScheduleTable:
             if (modes := shaper.design.modes) is not None
         )
         return schedule_json(
-            list(self.grid.units.items()), 1 if self._wish.order is None else self._wish.order, written
+            list(self.grid.units.items()), ORDER if self._wish.order is None else self._wish.order, written
         )
 
     def _modes(self, values: Values) -> Modes:

@@ -1,4 +1,4 @@
-"""The folder of a campaign: one file a batch, below a folder of the campaign's digest, so that nothing old is mixed in."""
+"""The folder of a campaign: a file for each batch, below the campaign's digest, so that nothing old is mixed in."""
 
 from __future__ import annotations
 

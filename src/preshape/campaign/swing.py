@@ -11,7 +11,7 @@ from preshape.mode import Modes
 __all__ = ["PERIODS", "swing"]
 
 PERIODS = 2.0
-"""Of the slowest mode, in which the largest and the least value are looked for; in less, drift cannot be told from it."""
+"""Of the slowest mode, in which largest and least value are looked for; in less, drift cannot be told from it."""
 
 FASTEST = 0.45
 """Modes above this part of the sample rate cannot be told from slower ones."""

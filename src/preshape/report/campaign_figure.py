@@ -62,7 +62,8 @@ def _draw(figure: Figure, axes: Axes, panel: CampaignPanel) -> None:
             axes.plot(x, y, color=colour, linestyle=line, linewidth=width, label=name)
         if panel.logarithmic:
             axes.set_xscale("log")
-        axes.legend(fontsize=8.5, loc="best", frameon=True, framealpha=0.9, edgecolor="white")
+        if len(panel.curves) > 1:
+            axes.legend(fontsize=8.5, loc="best", frameon=True, framealpha=0.9, edgecolor="white")
     elif isinstance(panel, Cloud):
         axes.plot(panel.x, panel.y, "o", color=ACCENT, markersize=2.5, markeredgewidth=0.0, alpha=0.6, rasterized=True)
     else:

@@ -91,8 +91,8 @@ class Schedule:
         values = [[(math.log(mode.frequency), mode.damping) for mode in modes] for modes in ordered]
         self._values = np.array(values).reshape(*shape, len(rows[first]), 2)
         self._designed: dict[tuple[int, ...], Shaper] = {}
-        for key, shaper in (shapers or {}).items():
-            self._take(_numbers(key), shaper, rows)
+        for at, shaper in (shapers or {}).items():
+            self._take(_numbers(at), shaper, rows)
 
     def modes(self, configuration: ArrayLike) -> Modes:
         """The modes at a configuration.

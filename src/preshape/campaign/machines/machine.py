@@ -61,7 +61,7 @@ class Machine(Protocol):
         """What the designer believes to vibrate there."""
 
     def after(self, values: Values, name: str, command: NDArray[np.float64], dt: float) -> Values:
-        """The parameters where a move ends that starts at `values`: `command` [unit of the input `name`] each `dt` [s]."""
+        """Where a move ends that starts at `values`, under `command` [unit of the input `name`] each `dt` [s]."""
 
     def instance(self, values: Values, end: Values, factors: Factors) -> Instance:
         """The real one, that starts at `values` and whose move ends at `end`."""
