@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import logging
 import queue
-from collections.abc import Iterator
+from concurrent.futures import CancelledError
 from types import TracebackType
 from typing import TYPE_CHECKING
 
@@ -27,7 +27,7 @@ CONNECTED_WITHIN = 10.0
 WORKERS_WITHIN = 30.0
 """How long is waited for a worker, at first and when all have gone [s]."""
 
-LOOKED_AFTER = 2.0
+LOOKED_AFTER = 5.0
 """Without a batch done for this long [s], it is looked whether the cluster is still there."""
 
 
@@ -86,8 +86,10 @@ class OnDask:
         self._stop()
 
     def submit(self, batch: Batch) -> None:
-        with self._while_there():
+        try:
             future = self.client.submit(run_batch, self._kind, self._campaign.digest, batch, pure=False)
+        except OSError as error:
+            raise self._gone() from error
         self._running.add(future)
         future.add_done_callback(lambda done: self._done.put((batch, done)))
 
@@ -105,13 +107,23 @@ class OnDask:
             if future.status == "cancelled":
                 raise self._gone()
             try:
-                with self._while_there():
-                    found: BatchDone = future.result()
+                found = self._fetched(future)
             except KilledWorker as error:
                 return BatchLost(batch, f"its process died {error.allowed_failures + 1} times while it ran")
             finally:
                 future.release()
             return found
+
+    def _fetched(self, future: Future) -> BatchDone:
+        """The result of a batch that is done; if its worker has gone with it, it is computed once more."""
+        while True:
+            try:
+                found: BatchDone = future.result(timeout=LOOKED_AFTER)
+                return found
+            except TimeoutError:
+                self._look()
+            except (CancelledError, asyncio.CancelledError, OSError) as error:
+                raise self._gone() from error
 
     def _start(self) -> None:
         from distributed import Client, LocalCluster
@@ -129,12 +141,12 @@ class OnDask:
             self._client.wait_for_workers(1, timeout=WORKERS_WITHIN)
             versions = self._client.run(_version)
             self.cores = sum(self._client.nthreads().values())
-        except (ModuleNotFoundError, ImportError) as error:
+        except ImportError as error:
             raise InputError(
                 f"the workers of {self._address} cannot import {error.name}: pip install 'preshape[campaign]' where "
                 "they run."
             ) from None
-        except (TimeoutError, OSError, ValueError, TypeError) as error:
+        except (OSError, ValueError, TypeError) as error:
             raise self._not_there(error) from None
         ours = _version()
         for other in sorted(set(versions.values()) - {ours}):
@@ -152,23 +164,14 @@ class OnDask:
             "start one with dask scheduler, and give the address that it prints, such as tcp://10.0.0.5:8786."
         )
 
-    @contextlib.contextmanager
-    def _while_there(self) -> Iterator[None]:
-        from concurrent.futures import CancelledError
-
-        from distributed.comm import CommClosedError
-
-        try:
-            yield
-        except (TimeoutError, CancelledError, asyncio.CancelledError, CommClosedError) as error:
-            raise self._gone() from error
-
     def _look(self) -> None:
         """InputError if the scheduler has gone, or all workers for too long."""
         if self.client.status != "running":
             raise self._gone()
-        with self._while_there():
+        try:
             there = bool(self.client.nthreads())
+        except OSError as error:
+            raise self._gone() from error
         self._without_workers = 0.0 if there else self._without_workers + LOOKED_AFTER
         if self._without_workers >= WORKERS_WITHIN:
             raise self._gone()
