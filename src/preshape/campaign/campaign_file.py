@@ -7,6 +7,7 @@ campaign from it. The fields are documented in docs/how-to/campaign.md and stabl
 from __future__ import annotations
 
 import hashlib
+import math
 import os
 import stat
 import tomllib
@@ -103,6 +104,7 @@ def campaign_of(data: Any, folder: str | os.PathLike[str] = ".") -> Campaign:
     if not isinstance(data, dict):
         raise InputError(f"a campaign is a table of settings, not {type(data).__name__}.")
     found = _with_files(data, Path(folder))
+    _check_finite(found, "")
     schema = found.pop("schema", None)
     if schema != CAMPAIGN_SCHEMA:
         raise InputError(f"its schema is {schema!r}: write schema = {CAMPAIGN_SCHEMA!r}, the one this version reads.")
@@ -122,6 +124,18 @@ def campaign_of(data: Any, folder: str | os.PathLike[str] = ".") -> Campaign:
     campaign = Campaign(encoder.encode(settings), digest)
     campaign.kind()
     return campaign
+
+
+def _check_finite(data: Any, where: str) -> None:
+    """JSON, as which the inputs are kept, has no word for NaN and infinity, and no setting needs them."""
+    if isinstance(data, dict):
+        for key, value in data.items():
+            _check_finite(value, f"{where}.{key}" if where else str(key))
+    elif isinstance(data, list | tuple):
+        for value in data:
+            _check_finite(value, where)
+    elif isinstance(data, float) and not math.isfinite(data):
+        raise InputError(f"{where} holds {data:g}: give finite numbers.")
 
 
 def _with_files(data: dict[str, Any], folder: Path) -> dict[str, Any]:

@@ -170,14 +170,13 @@ class Robustness:
         period = 1.0 / min(mode.frequency for mode in one.modes)
         rest = math.ceil(max(self._settings.rest, PERIODS + 1.0) * period / dt)
         skipped = math.ceil(self._settings.wait / dt)
-        shaped = np.asarray(shaper.shape(self._command, dt))
-        length = shaped.size + skipped + rest
+        length = self._command.size + math.ceil(shaper.duration / dt) + skipped + rest
         if length > MOST_SAMPLES:
             raise InputError(f"a simulation takes {length} samples of {dt:g} s: give a larger dt, or a shorter move.")
         if dry:
             return math.nan, math.nan
         left = []
-        for part in (self._command, shaped):
+        for part in (self._command, np.asarray(shaper.shape(self._command, dt))):
             ends = part.size - 1 + skipped
             rows = np.zeros((len(plant.inputs), ends + 1 + rest))
             for row, name in zip(rows, plant.inputs, strict=True):
