@@ -13,6 +13,10 @@ from distributed import LocalCluster
 def cluster() -> Iterator[LocalCluster]:
     """Two worker processes that come back when they are killed, and a scheduler with an address."""
     with LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=logging.CRITICAL
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address="127.0.0.1:0",
+        silence_logs=logging.CRITICAL,
     ) as running:
         yield running

@@ -31,7 +31,7 @@ WRONG: list[tuple[dict[str, Any], str, Any, str]] = [
         ROBUSTNESS,
         "robustness.scatter",
         {"frequency": float("nan")},
-        "robustness.scatter.frequency holds nan: give finite numbers",
+        "scatter.frequency holds nan: give finite",
     ),
     (ROBUSTNESS, "robustness.scatter", {}, "nothing varies"),
     (ROBUSTNESS, "robustness.ranges", {"payload": [0, 1]}, "ranges names 'payload'.*it has none"),

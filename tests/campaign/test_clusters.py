@@ -21,7 +21,11 @@ from preshape.errors import InputError
 def in_threads(workers: int) -> LocalCluster:
     """A cluster of threads of this process, started in no time."""
     return LocalCluster(
-        n_workers=workers, threads_per_worker=1, processes=False, dashboard_address=None, silence_logs=logging.CRITICAL
+        n_workers=workers,
+        threads_per_worker=1,
+        processes=False,
+        dashboard_address="127.0.0.1:0",
+        silence_logs=logging.CRITICAL,
     )
 
 

@@ -130,9 +130,10 @@ class OnDask:
 
         if self._address is None:
             # One thread each: the points are Python, and linear algebra on small matrices wants none of its own (Dask
-            # sets OMP_NUM_THREADS and the like to 1 in the processes it starts).
+            # sets OMP_NUM_THREADS and the like to 1 in the processes it starts). Its web page gets any free port of the
+            # loopback: the usual one may be taken, and is open to the network.
             self._cluster = LocalCluster(
-                n_workers=self._workers, threads_per_worker=1, processes=True, dashboard_address=None,
+                n_workers=self._workers, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0",
                 silence_logs=logging.CRITICAL,
             )  # fmt: skip
         where = self._cluster if self._cluster is not None else self._address
