@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+import types
 from pathlib import Path
 
 import pytest
@@ -51,6 +52,16 @@ def test_workers_that_have_another_version(tmp_path: Path, monkeypatch: pytest.M
 
     monkeypatch.setattr(on_dask, "_version", version)
     with in_threads(1) as cluster, pytest.raises(InputError, match=r"have preshape 9.9.9, and this is 0.1.0: install"):
+        run_campaign(campaign(mode_map(3)), tmp_path, scheduler=cluster.scheduler_address)
+
+
+def test_workers_without_preshape(cluster: LocalCluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As Dask has it: what is sent is a name, and the module of that name is not there."""
+    absent = types.ModuleType("only_here")
+    exec("def version():\n    return '0.1.0'", absent.__dict__)
+    monkeypatch.setitem(sys.modules, "only_here", absent)
+    monkeypatch.setattr(on_dask, "_version", absent.version)
+    with pytest.raises(InputError, match=r"cannot run preshape \(.*only_here.*\): pip install 'preshape\[campaign\]'"):
         run_campaign(campaign(mode_map(3)), tmp_path, scheduler=cluster.scheduler_address)
 
 

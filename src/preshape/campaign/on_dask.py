@@ -140,19 +140,28 @@ class OnDask:
         try:
             self._client = Client(where, timeout=CONNECTED_WITHIN, set_as_default=False)
             self._client.wait_for_workers(1, timeout=WORKERS_WITHIN)
-            versions = self._client.run(_version)
-            self.cores = sum(self._client.nthreads().values())
-        except ImportError as error:
-            raise InputError(
-                f"the workers of {self._address} cannot import {error.name}: pip install 'preshape[campaign]' where "
-                "they run."
-            ) from None
         except (OSError, ValueError, TypeError) as error:
             raise self._not_there(error) from None
-        ours = _version()
-        for other in sorted(set(versions.values()) - {ours}):
-            raise InputError(f"the workers of {self._address} have preshape {other}, and this is {ours}: install one.")
+        self._check_versions(self._client)
+        self.cores = sum(self._client.nthreads().values())
         self._kind = self._client.submit(_kind_of, self._campaign, pure=False)
+
+    def _check_versions(self, client: Client) -> None:
+        """InputError unless all workers can compute what this process would."""
+        try:
+            found = client.run(_version, on_error="return")
+        except OSError as error:
+            raise self._gone() from error
+        for other in found.values():
+            if isinstance(other, Exception):
+                reason = str(other.__cause__ or other).splitlines()[:1]
+                raise InputError(
+                    f"the workers of {self._address} cannot run preshape ({', '.join(reason)}): pip install "
+                    "'preshape[campaign]' where they run."
+                )
+        ours = _version()
+        for other in sorted(set(found.values()) - {ours}):
+            raise InputError(f"the workers of {self._address} have preshape {other}, and this is {ours}: install one.")
 
     def _not_there(self, error: Exception) -> InputError:
         if self._client is not None:

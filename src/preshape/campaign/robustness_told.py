@@ -14,7 +14,7 @@ __all__ = ["robustness_told"]
 SHARES = np.linspace(0.0, 1.0, 501)
 """Of the machines, at which a distribution is drawn."""
 
-MOST_DRAWN = 4000
+MOST_DRAWN = 2000
 """Points of a cloud."""
 
 RESULTS = ("unshaped", "shaped", "remaining", "duration")

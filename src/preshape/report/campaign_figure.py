@@ -65,7 +65,7 @@ def _draw(figure: Figure, axes: Axes, panel: CampaignPanel) -> None:
         if len(panel.curves) > 1:
             axes.legend(fontsize=8.5, loc="best", frameon=True, framealpha=0.9, edgecolor="white")
     elif isinstance(panel, Cloud):
-        axes.plot(panel.x, panel.y, "o", color=ACCENT, markersize=2.5, markeredgewidth=0.0, alpha=0.6, rasterized=True)
+        axes.plot(panel.x, panel.y, "o", color=ACCENT, markersize=2.5, markeredgewidth=0.0, alpha=0.6)
     else:
         axes.grid(False)
         drawn = axes.pcolormesh(panel.x, panel.y, np.ma.masked_invalid(panel.values), cmap=COLOURS, shading="nearest")
