@@ -7,6 +7,7 @@ said otherwise.
 
 from __future__ import annotations
 
+import heapq
 import sys
 import tempfile
 import time
@@ -20,6 +21,8 @@ from timing import once
 from preshape.campaign import Campaign, campaign_of, run_campaign
 from preshape.campaign.batch import Batch, BatchDone
 from preshape.campaign.on_dask import OnDask
+from preshape.campaign.run import AHEAD
+from preshape.campaign.sizes import BatchSizes
 from preshape.campaign.store import Store
 
 MODES = ((0.20, 0.01), (0.26, 0.01), (0.45, 0.01), (0.59, 0.01))
@@ -113,8 +116,8 @@ def rate(count: int) -> None:
         print(f"memory at {row[0]} points: this process {row[3]:.0f} MB, the larger worker {row[4]:.0f} MB", flush=True)
 
 
-def overhead() -> None:
-    """What a batch costs whatever is in it, and what starting costs."""
+def overhead() -> tuple[float, float]:
+    """What a batch costs client and worker whatever is in it [s], and what starting costs."""
     asked = campaign_of(
         {
             "schema": "preshape/campaign/1",
@@ -152,6 +155,44 @@ def overhead() -> None:
         f"{1e3 * workers / TASKS:.2f} ms; starting to the first result {started:.1f} s by the clock",
         flush=True,
     )
+    return own / TASKS, workers / TASKS
+
+
+def simulated(points: int, each: float, cores: int, client: float, worker: float) -> float:
+    """Seconds a campaign takes whose batches cost the one client and their worker so much each [s]."""
+    sizes, left, now = BatchSizes(cores), points, 0.0
+    sizes.learn(1, each)
+    free, running = [0.0] * cores, list[float]()
+
+    def submit() -> None:
+        nonlocal left
+        size = sizes.next(left)
+        left -= size
+        end = max(now, heapq.heappop(free)) + worker + size * each
+        heapq.heappush(free, end)
+        heapq.heappush(running, end)
+
+    while left or running:
+        if left and len(running) < AHEAD * cores:
+            submit()
+            continue
+        now = max(now, heapq.heappop(running)) + client
+    return now
+
+
+def model(client: float, worker: float) -> None:
+    """What the measured costs of a batch come to on more cores than there are here."""
+    print(f"cost model: {1e3 * client:.1f} ms of the client and {1e3 * worker:.1f} ms of a worker a batch")
+    for what, each, points in (
+        ("four-mode designs, 3.3 ms", 3.3e-3, (10**5, 10**6, 10**7)),
+        ("non-linear simulations, 1 s", 1.0, (10**4, 10**5, 10**6)),
+    ):
+        for count in points:
+            parts = []
+            for cores in (2, 10, 100, 1000):
+                seconds = simulated(count, each, cores, client, worker)
+                parts.append(f"{cores}: {seconds:.0f} s, {100.0 * count * each / (cores * seconds):.1f} %")
+            print(f"{count} {what}: {'; '.join(parts)}", flush=True)
 
 
 def again(store: Store, done: BatchDone) -> None:
@@ -162,7 +203,7 @@ def again(store: Store, done: BatchDone) -> None:
 
 def main() -> None:
     """Overhead first, then the rate."""
-    overhead()
+    model(*overhead())
     rate(int(sys.argv[1]) if len(sys.argv) > 1 else 10_000)
 
 

@@ -116,19 +116,20 @@ class DesignMap:
     def told(self, results: Results) -> Told:
         numbers, error = results.numbers, 100.0 * self._settings.frequency_error
         spans = [
-            ("slowest mode", "slowest mode [Hz]", "{:.4g} Hz", 1.0),
-            ("duration", "duration of the shaper [s]", "{:.4g} s", 1.0),
-            ("vibration off", f"vibration [%], frequencies off by {error:g} %", "{:.3g} %", 100.0),
-            *([("insensitivity", "insensitivity [-]", "{:.4g}", 1.0)] if "insensitivity" in numbers else []),
+            ("slowest mode", "slowest mode", "Hz", 1.0),
+            ("duration", "duration of the shaper", "s", 1.0),
+            ("vibration off", f"vibration, frequencies off by {error:g} %", "%", 100.0),
+            *([("insensitivity", "insensitivity", "-", 1.0)] if "insensitivity" in numbers else []),
         ]
         rows = []
-        for name, title, shown, scale in spans:
-            low, high = (scale * float(end(numbers[name])) for end in (np.min, np.max))
-            rows.append((title.split(" [")[0], f"{shown.format(low)} to {shown.format(high)}"))
+        for name, title, unit, scale in spans:
+            low, high = (f"{scale * float(end(numbers[name])):.4g}" for end in (np.min, np.max))
+            rows.append((title, f"{low} to {high} {unit}".removesuffix(" -")))
         rows.append(("impulses", f"{int(numbers['impulses'].min())} to {int(numbers['impulses'].max())}"))
         rows.append(("proved shortest", f"{100.0 * float(np.mean(numbers['proved shortest'])):.4g} % of the points"))
         panels = tuple(
-            grid_panel(self.grid, results.points, scale * numbers[name], title) for name, title, _, scale in spans
+            grid_panel(self.grid, results.points, scale * numbers[name], f"{title} [{unit}]")
+            for name, title, unit, scale in spans
         )
         notes = ("drawn over the first two axes; the others are at their first values.",)
         return Told(tuple(rows), panels, {}, notes if len(self.grid.shape) > 2 else ())

@@ -40,6 +40,10 @@ def require_dask() -> None:
             raise InputError(f"a campaign needs {module}, which is not installed: pip install 'preshape[campaign]'.")
 
 
+WITHOUT_PROFILE = {"distributed": {"worker": {"profile": {"enabled": False}}}}
+"""Dask's workers look a hundred times a second where they are, and keep that for an hour: memory would grow."""
+
+
 class OnDask:
     """Runs batches as Dask tasks.
 
@@ -126,6 +130,7 @@ class OnDask:
                 raise self._gone() from error
 
     def _start(self) -> None:
+        import dask
         from distributed import Client, LocalCluster
 
         if self._address is None:
@@ -134,7 +139,7 @@ class OnDask:
             # loopback: the usual one may be taken, and is open to the network.
             self._cluster = LocalCluster(
                 n_workers=self._workers, threads_per_worker=1, processes=True, dashboard_address="127.0.0.1:0",
-                silence_logs=logging.CRITICAL,
+                silence_logs=logging.CRITICAL, config=dask.config.merge(dask.config.config, WITHOUT_PROFILE),
             )  # fmt: skip
         where = self._cluster if self._cluster is not None else self._address
         try:

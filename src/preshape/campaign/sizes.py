@@ -14,13 +14,14 @@ SHORTEST = 1.0
 """Of a batch [s], where there are points enough: a hundred times what scheduling one takes."""
 
 KEPT_UP = 0.02
-"""Of a batch for each core [s]: one client starts, fetches and writes fifty batches a second with ease."""
+"""Of a batch for each core [s]: one client starts, fetches and keeps fifty batches a second with ease (the benchmark
+says what one takes)."""
 
 SHARES = 3.0
 """Of what is left, a core gets a third of its part at a time: batches become shorter towards the end."""
 
-LEAST = 0.2
-"""Of the last batches [s]: twenty times what scheduling one takes, so that its part stays below 5 %."""
+LEAST, LEAST_KEPT_UP = 0.2, 0.01
+"""Of the last batches [s], and for each core [s]: long enough for 5 % of overhead at most, and for the one client."""
 
 FORGETTING = 0.5
 """Weight of a new measurement [-]."""
@@ -62,5 +63,5 @@ class BatchSizes:
         if self._seconds is None:
             return 1
         wanted = max(SHORTEST, KEPT_UP * self._cores) / self._seconds
-        shared = max(left / (SHARES * self._cores), LEAST / self._seconds)
+        shared = max(left / (SHARES * self._cores), max(LEAST, LEAST_KEPT_UP * self._cores) / self._seconds)
         return max(1, min(left, math.floor(min(wanted, shared))))

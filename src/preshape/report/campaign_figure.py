@@ -28,6 +28,9 @@ COLOURS = "cividis"
 
 CONTOURS = 6
 
+MOST_CELLS = 4000
+"""Of a map that is drawn cell by cell; a finer one is an image within the figure."""
+
 
 def campaign_figure(summary: CampaignSummary) -> Figure:
     """All panels of a campaign.
@@ -68,11 +71,19 @@ def _draw(figure: Figure, axes: Axes, panel: CampaignPanel) -> None:
         axes.plot(panel.x, panel.y, "o", color=ACCENT, markersize=2.5, markeredgewidth=0.0, alpha=0.6)
     else:
         axes.grid(False)
-        drawn = axes.pcolormesh(panel.x, panel.y, np.ma.masked_invalid(panel.values), cmap=COLOURS, shading="nearest")
+        drawn = axes.pcolormesh(
+            panel.x, panel.y, np.ma.masked_invalid(panel.values), cmap=COLOURS, shading="nearest",
+            edgecolors="face", linewidth=0.2, rasterized=panel.values.size > MOST_CELLS,
+        )  # fmt: skip
         figure.colorbar(drawn, ax=axes)
         if min(panel.values.shape) > 1 and _varies(panel.values):
-            lines = axes.contour(panel.x, panel.y, panel.values, CONTOURS, colors="white", linewidths=0.7)
-            axes.clabel(lines, fontsize=7.5)
+            from matplotlib.patheffects import AbstractPathEffect, withStroke
+
+            outline: list[AbstractPathEffect] = [withStroke(linewidth=1.8, foreground=INK)]
+            lines = axes.contour(panel.x, panel.y, panel.values, CONTOURS, colors="white", linewidths=0.8)
+            lines.set(path_effects=outline)
+            for label in axes.clabel(lines, fontsize=7.5):
+                label.set_path_effects(outline)
 
 
 def _varies(values: NDArray[np.float64]) -> bool:
