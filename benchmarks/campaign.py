@@ -102,6 +102,9 @@ def rate(count: int) -> None:
         f"(before {1e3 * before / LOOPED:.3f}, after {1e3 * after / LOOPED:.3f}), {count * loop:.1f} s for all"
     )
     print(
+        f"without the start, workers {last[2] - first[2]:.1f} s, client and scheduler {last[1] - first[1]:.1f} s of it"
+    )
+    print(
         f"rate over twice the single-process rate: {100.0 * count * loop / (workers + client):.1f} % with starting, "
         f"{100.0 * (last[0] - first[0]) * loop / running:.1f} % from the first batch on (claim: 90 %); by the clock "
         f"{100.0 * count * loop / (2.0 * clock):.1f} %"

@@ -38,7 +38,7 @@ def test_the_screen_names_points_numbers_and_files(
     code, out, err = ran(capsys, "small.toml", "--workers", "0")
     assert (code, err) == (0, "")
     assert "Design map: 5 of 5 points done" in out
-    assert re.search(r"duration of the shaper +2\.006 s to 4\.013 s", out)
+    assert re.search(r"duration of the shaper +2\.006 to 4\.013 s", out)
     written = re.findall(r"Written: (.+)", out)
     assert written == ["campaign-small/results.parquet", "campaign-small/figure.svg"]
     assert all((tmp_path / name).stat().st_size > 1000 for name in written)
