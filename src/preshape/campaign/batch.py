@@ -45,14 +45,15 @@ class BatchDone:
         The file.
     failed : tuple of int
         Points without a result.
-    seconds : float
-        That the points took [s], without the file.
+    seconds, processor : float
+        That the points took by the clock, and of the processor [s], without the file.
     """
 
     batch: Batch
     content: bytes
     failed: tuple[int, ...]
     seconds: float
+    processor: float
 
 
 def run_batch(kind: Kind, digest: str, batch: Batch) -> BatchDone:
@@ -67,7 +68,7 @@ def run_batch(kind: Kind, digest: str, batch: Batch) -> BatchDone:
     batch : Batch
         Which points.
     """
-    start = time.perf_counter()
+    start, began = time.perf_counter(), time.thread_time()
     rows: list[dict[str, Any]] = []
     for point in batch.points:
         try:
@@ -76,13 +77,13 @@ def run_batch(kind: Kind, digest: str, batch: Batch) -> BatchDone:
             rows.append({ERROR: str(error)[:LONGEST_ERROR]})
         except Exception as error:  # a fault of ours in one point must not cost the others
             rows.append({ERROR: f"{type(error).__name__}: {error}"[:LONGEST_ERROR]})
-    seconds = time.perf_counter() - start
-    return _done(kind, digest, batch, rows, seconds)
+    took = time.perf_counter() - start, time.thread_time() - began
+    return _done(kind, digest, batch, rows, took)
 
 
 def lost_batch(kind: Kind, digest: str, batch: Batch, reason: str) -> BatchDone:
     """The record of a batch whose process died again and again."""
-    return _done(kind, digest, batch, [{ERROR: reason[:LONGEST_ERROR]} for _ in batch.points], 0.0)
+    return _done(kind, digest, batch, [{ERROR: reason[:LONGEST_ERROR]} for _ in batch.points], (0.0, 0.0))
 
 
 def written_table(table: pyarrow.Table) -> bytes:
@@ -94,7 +95,9 @@ def written_table(table: pyarrow.Table) -> bytes:
     return buffer.getvalue()
 
 
-def _done(kind: Kind, digest: str, batch: Batch, rows: Sequence[dict[str, Any]], seconds: float) -> BatchDone:
+def _done(
+    kind: Kind, digest: str, batch: Batch, rows: Sequence[dict[str, Any]], took: tuple[float, float]
+) -> BatchDone:
     import pyarrow
 
     own = [(column.name, pyarrow.string() if column.text else pyarrow.float64()) for column in kind.columns]
@@ -105,4 +108,4 @@ def _done(kind: Kind, digest: str, batch: Batch, rows: Sequence[dict[str, Any]],
     arrays = [pyarrow.array(values, kind_of) for values, (_, kind_of) in zip(given, fields, strict=True)]
     table = pyarrow.Table.from_arrays(arrays, schema=schema)
     failed = tuple(point for point, row in zip(batch.points, rows, strict=True) if row[ERROR] is not None)
-    return BatchDone(batch, written_table(table), failed, seconds)
+    return BatchDone(batch, written_table(table), failed, *took)
