@@ -112,10 +112,10 @@ def rate(count: int) -> None:
         f"{workers:.1f} s, client and scheduler {client:.1f} s; loop {1e3 * loop:.3f} ms a point "
         f"(before {1e3 * before / LOOPED:.3f}, after {1e3 * after / LOOPED:.3f}), {count * loop:.1f} s for all"
     )
+    own = Counting.processor
     print(
-        f"the points themselves took {Counting.processor:.1f} s in the workers: {100.0 * Counting.processor / running:.1f} "
-        f"% of all processes from the first batch on, {100.0 * Counting.processor / (workers + client):.1f} % with "
-        "starting (claim: 90 %; does not depend on what else runs)"
+        f"the points took {own:.1f} s in the workers: {100.0 * own / running:.1f} % of all processes from the "
+        f"first batch on, {100.0 * own / (workers + client):.1f} % with starting (claim: 90 %; whatever else runs)"
     )
     print(
         f"rate over twice the single-process rate: {100.0 * count * loop / (workers + client):.1f} % with starting, "
