@@ -159,6 +159,8 @@ class OnDask:
         except (OSError, ValueError, TypeError) as error:
             raise self._not_there(error) from None
         self._check_versions(self._client)
+        if self._cluster is not None:
+            self._client.register_worker_callbacks(setup=_uninterrupted)
         self.cores = sum(self._client.nthreads().values())
         self._kind = self._client.submit(_kind_of, self._campaign, pure=False)
 
@@ -222,6 +224,13 @@ def _version() -> str:
     from importlib.metadata import version
 
     return version("preshape")
+
+
+def _uninterrupted() -> None:
+    """Control-C goes to all processes of a terminal; it is the client that stops its workers, without their say."""
+    import signal
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _kind_of(campaign: Campaign) -> Kind:
