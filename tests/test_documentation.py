@@ -71,6 +71,8 @@ def test_console_lines_are_accepted(line: str, tmp_path: Path, monkeypatch: pyte
                 "part.gcode",
                 "printer.cfg",
                 "config.g",
+                "crane-map.toml",
+                "gantry-robustness.toml",
                 "ring_down.csv",
             )
         ),

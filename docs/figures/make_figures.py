@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.patches import Rectangle
 
 from preshape import Modes, design, identify
+from preshape.campaign import run_campaign
 from preshape.command.path import shaped_path
 from preshape.command.rest_to_rest import deflection_limiting
 from preshape.engine.basis import Basis
@@ -21,7 +23,14 @@ from preshape.identify import TimeSeries, operational_modes
 from preshape.papers.hyde.chapter6_figures import swept_figure
 from preshape.papers.hyde.chapter6_sweep import sweep
 from preshape.plant import FloatingOscillator, load_plant
-from preshape.report import comparison_figure, contour_figure, move_figure, simulation_figure, stabilisation_figure
+from preshape.report import (
+    campaign_figure,
+    comparison_figure,
+    contour_figure,
+    move_figure,
+    simulation_figure,
+    stabilisation_figure,
+)
 from preshape.report.figures import ACCENT, INK, MUTED, SECOND, SOFT, as_svg, new_figure, tidy
 from preshape.vibration import residual_vibration, tolerated_bands
 from preshape.workflow import compare, simulate_plant
@@ -198,6 +207,13 @@ def own_machine() -> Figure:
     return simulation_figure(simulate_plant(gantry, np.minimum(np.arange(250) * 1e-3, 0.2), 1e-3, shaper))
 
 
+def campaign() -> Figure:
+    """The robustness campaign of the examples."""
+    with TemporaryDirectory() as folder:
+        file = HERE.parents[1] / "examples" / "data" / "gantry-robustness.toml"
+        return campaign_figure(run_campaign(file, folder, workers=0).summary)
+
+
 def contours() -> Figure:
     """The part of the examples, shaped in three ways."""
     part = identify.read(HERE.parents[1] / "examples" / "data" / "part.csv")
@@ -274,6 +290,7 @@ def which_shaper() -> Figure:
 
 FIGURES = {
     "adaptive": adaptive,
+    "campaign": campaign,
     "certificate": certificate,
     "comparison": comparison,
     "contours": contours,

@@ -3,6 +3,8 @@
 from preshape.report.calibration import FREQUENCY_ERROR, Calibration, Candidate, MeasuredFile, SimulatedMove
 from preshape.report.calibration_document import calibration_document, klipper_sentence
 from preshape.report.calibration_figure import calibration_figure
+from preshape.report.campaign import CampaignPanel, CampaignSummary, Cloud, Curves, Field
+from preshape.report.campaign_figure import campaign_figure
 from preshape.report.comparison import Comparison, Contender, Kind, LeftOut
 from preshape.report.comparison_figure import comparison_figure
 from preshape.report.comparison_table import (
@@ -55,15 +57,20 @@ __all__ = [
     "AS_PREDICTED",
     "Calibration",
     "CalibrationJob",
+    "CampaignPanel",
+    "CampaignSummary",
     "Candidate",
+    "Cloud",
     "Comparison",
     "Contender",
+    "Curves",
     "DOUBTFUL",
     "DesignJob",
     "Document",
     "Estimate",
     "Export",
     "FREQUENCY_ERROR",
+    "Field",
     "GivenJob",
     "Heading",
     "Job",
@@ -96,6 +103,8 @@ __all__ = [
     "as_svg",
     "calibration_document",
     "calibration_figure",
+    "calibration_page",
+    "campaign_figure",
     "can_make_pdf",
     "candidate_table",
     "comparison_figure",
