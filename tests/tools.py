@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-TOOLS = ("gcc", "clang", "cppcheck", "halcompile", "halrun", "unshare")
+TOOLS = ("gcc", "clang", "cppcheck", "halcompile", "halrun", "unshare", "chromium")
 REQUIRED = bool(os.environ.get("PRESHAPE_REQUIRE_TOOLS"))
 
 STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-Werror"]

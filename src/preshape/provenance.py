@@ -189,3 +189,7 @@ class Design:
         if self.status not in ("exact", "optimal", "feasible", "given"):
             raise InputError(f"status {self.status!r} is not known: it is exact, optimal, feasible or given.")
         object.__setattr__(self, "settings", MappingProxyType(dict(self.settings)))
+
+    def __reduce__(self) -> tuple[type[Design], tuple[Any, ...]]:
+        """To another process: the read-only view of the settings cannot be sent, what it shows can."""
+        return Design, (self.family, self.modes, dict(self.settings), self.status, self.residual, self.certificate)

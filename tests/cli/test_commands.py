@@ -93,20 +93,20 @@ def test_wrong_input_is_one_sentence_and_exit_code_2(
 
 
 def test_our_own_fault_is_exit_code_1(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(*_: object) -> None:
+    def broken(*_: object, **__: object) -> None:
         raise RuntimeError("bug")
 
-    monkeypatch.setattr(design, "on_grid", broken)
+    monkeypatch.setattr(design, "designed", broken)
     code, _, err = run(capsys, "design", "--family", "zv", "--mode", "10", "--dt", "0.001")
     assert code == 1
     assert "fault of preshape" in err and "RuntimeError: bug" in err
 
 
 def test_an_interruption_says_so(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(*_: object) -> None:
+    def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(design, "on_grid", interrupted)
+    monkeypatch.setattr(design, "designed", interrupted)
     code, _, err = run(capsys, "design", "--family", "zv", "--mode", "10", "--dt", "0.001")
     assert code == 130 and "Interrupted" in err and "Traceback" not in err
 

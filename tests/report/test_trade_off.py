@@ -12,8 +12,9 @@ from matplotlib.colors import to_rgb
 from preshape.report import (
     Calibration,
     TradeOff,
+    as_html,
     as_svg,
-    calibration_page,
+    calibration_document,
     gain_sentences,
     limit_sentence,
     pick_table,
@@ -22,6 +23,7 @@ from preshape.report import (
 )
 from preshape.report.figures import ACCENT, SECOND
 from preshape.workflow import calibrate
+from preshape.workflow.record import new_record
 
 GANTRY = Path(__file__).resolve().parents[2] / "examples" / "data" / "gantry_x.csv"
 
@@ -62,20 +64,24 @@ def test_a_share_is_said_with_what_it_is_of(trade: TradeOff) -> None:
     assert "3 % of the vibration less than stock" in gain_sentences(replace(trade, stock=loud, quality=quiet))[2]
 
 
+def page_of(calibration: Calibration) -> str:
+    return as_html(calibration_document(calibration, new_record(calibration.job, calibration.shaper, ())))
+
+
 def test_what_the_picks_cost_when_the_frequencies_are_off_is_said_and_marked(
     gantry: Calibration, trade: TradeOff
 ) -> None:
     assert trade.fragile and all(pick.left > trade.stock.left for pick in trade.fragile)
-    sentence, page = robustness_sentence(trade), calibration_page(gantry, "0")
+    sentence, page = robustness_sentence(trade), page_of(gantry)
     for pick in trade.fragile:
         assert f"{pick.name} {100.0 * pick.left:.0f} %" in sentence
     assert f"the {100.0 * trade.stock.left:.0f} % of stock" in sentence and "5 % off" in sentence
-    assert f'<div class="trouble">{escape(sentence)}</div>' in page
+    assert f'<p class="warning">{escape(sentence)}</p>' in page
     assert page.count('<tr class="fragile">') == len(trade.fragile)
     robust = {pick.name: replace(pick, left=trade.stock.left) for pick in trade.picks}
     calm = replace(trade, **robust)
     assert calm.fragile == () and "no pick leaves more" in robustness_sentence(calm)
-    quiet_page = calibration_page(replace(gantry, trade_off=calm), "0")
+    quiet_page = page_of(replace(gantry, trade_off=calm))
     assert '<tr class="fragile">' not in quiet_page and escape(robustness_sentence(calm)) in quiet_page
 
 
@@ -141,8 +147,8 @@ def test_the_marks_stay_apart_in_grey_print(trade: TradeOff) -> None:
 
 
 def test_the_page_has_the_trade_off_and_the_settings(gantry: Calibration, trade: TradeOff) -> None:
-    page = calibration_page(gantry, "0")
-    assert page.count("<svg") == 2
+    page = as_html(calibration_document(gantry, new_record(gantry.job, gantry.shaper, gantry.inputs)))
+    assert page.count("<svg") == 3  # with the robustness
     for sentence in gain_sentences(trade):
         assert escape(sentence) in page
     for text in gantry.texts:

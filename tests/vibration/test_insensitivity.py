@@ -113,3 +113,21 @@ def test_a_tolerance_is_a_fraction(tolerance: float) -> None:
 def test_an_empty_range_is_refused() -> None:
     with pytest.raises(InputError, match="is empty"):
         tolerated_bands(design.zv((1.0, 0.0)), 0.05, 0.0, 2.0, 1.0)
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_the_band_found_outwards_is_the_one_among_all_bands(seed: int) -> None:
+    """`tolerated_bands` locates every extremum of V in the range; the search from the mode only those it needs."""
+    rng = np.random.default_rng(seed)
+    modes = [(float(f), float(rng.choice([0.0, 0.01, 0.05, 0.2]))) for f in np.cumsum(rng.uniform(1.0, 20.0, 3))]
+    family = str(rng.choice(["zv", "zvd", "ei", "mzv", "two_hump_ei", "ps_zv", "um_zv"]))
+    shaper, tolerance = design.FAMILIES[family](modes), float(rng.choice([0.01, 0.05, 0.1, 0.3]))
+    for f, damping in modes:
+        found = insensitivity(shaper, (f, damping), tolerance)
+        if residual_vibration(shaper, f, damping) > tolerance:  # an EI hump of 5 % where 1 % is allowed
+            assert found.value == 0.0
+            continue
+        bands = tolerated_bands(shaper, tolerance, damping, 0.0, 4.0 * f)
+        low, high = next((a, b) for a, b in bands if a <= f * (1.0 + 1e-8) and f <= b * (1.0 + 1e-8))
+        assert found.low == pytest.approx(low, abs=1e-12 * f)
+        assert found.high == pytest.approx(high, abs=1e-12 * f) if high < 4.0 * f else found.high >= high

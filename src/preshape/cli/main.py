@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import traceback
 from importlib import import_module
+from typing import Any
 
 import click
 
@@ -18,10 +19,13 @@ COMMANDS = {
     "gcode": "Shape the moves of a G-code program, for a controller that cannot.",
     "stream": "Shape standard input into standard output, sample by sample.",
     "export": "Write a shaper for somebody else's controller: C, LinuxCNC ...",
+    "studio": "Choose a shaper with your eyes, on a page in your browser.",
     "compare": "Compare every kind of command for one move of a flexible machine.",
     "move": "Move a flexible body from rest to rest, within a deflection.",
     "simulate": "Simulate your machine under a command, unshaped beside shaped.",
     "verify": "Compare recordings of a move without and with the shaper, or write the moves.",
+    "rerun": "Run again what a report says it was made from, and compare.",
+    "campaign": "Compute thousands of designs or simulations, here or on a cluster.",
     "reproduce": "Recompute what the papers print, with verdicts and figures.",
 }
 """Each in a module of its own, imported when it is called: help stays fast."""
@@ -30,6 +34,12 @@ INTERRUPTED = 130
 
 
 class _Commands(click.Group):
+    def make_context(
+        self, info_name: str | None, args: list[str], parent: click.Context | None = None, **extra: Any
+    ) -> click.Context:
+        """The context, which keeps what was typed: reports say it."""
+        return super().make_context(info_name, args, parent, obj=list(args), **extra)
+
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
 

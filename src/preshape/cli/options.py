@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable
 from typing import Any
 
@@ -11,9 +12,23 @@ from preshape.band import Band
 from preshape.errors import InputError
 from preshape.mode import Mode
 
-__all__ = ["BandOption", "ModeOption", "mode_option", "sample_rate_option", "tolerance_option"]
+__all__ = [
+    "BandOption",
+    "Decorator",
+    "ModeOption",
+    "mode_option",
+    "sample_rate_option",
+    "spelled",
+    "tolerance_option",
+    "typed",
+]
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+def spelled(name: str) -> str:
+    """An option's name as it is typed."""
+    return "--" + name.replace("_", "-")
 
 
 class ModeOption(click.ParamType[Mode]):
@@ -77,3 +92,8 @@ def sample_rate_option() -> Decorator:
     return click.option(
         "--sample-rate", type=float, metavar="HZ", help="Samples per second, for a table without a time column."
     )
+
+
+def typed(context: click.Context) -> str:
+    """The command line as it was typed, so that a shell would take it again."""
+    return shlex.join(["preshape", *context.find_root().obj])

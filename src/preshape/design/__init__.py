@@ -1,6 +1,7 @@
 """Modes and wishes in, a Shaper out; one family a file."""
 
 from preshape.design.antiperiod import AntiperiodAnalysis, antiperiod, antiperiod_analysis
+from preshape.design.asked import ASKED_FAMILIES, designed, needed_by, taken_by
 from preshape.design.band import ei_for_band
 from preshape.design.convolved import convolved
 from preshape.design.deflection_limited import deflection_limited
@@ -11,6 +12,7 @@ from preshape.design.families import CLOSED_FAMILIES, FAMILIES
 from preshape.design.mesh import interpreted, mesh, rounded, solved_from, squashed
 from preshape.design.mzv import mzv
 from preshape.design.on_grid import on_grid
+from preshape.design.options import OPTIONS, Option
 from preshape.design.partial_sum import ps_zv, ps_zvd
 from preshape.design.specified_deflection import sd_zv
 from preshape.design.specified_insensitivity import bands_of_sets, specified_insensitivity
@@ -20,15 +22,19 @@ from preshape.design.synchronised import delayed, synchronised
 from preshape.design.unity_magnitude import um_ei, um_zv, um_zvd
 
 __all__ = [
+    "ASKED_FAMILIES",
     "CLOSED_FAMILIES",
     "FAMILIES",
+    "OPTIONS",
     "AntiperiodAnalysis",
+    "Option",
     "antiperiod",
     "antiperiod_analysis",
     "bands_of_sets",
     "convolved",
     "deflection_limited",
     "delayed",
+    "designed",
     "direct",
     "direct_near",
     "ei",
@@ -37,6 +43,7 @@ __all__ = [
     "k_hump_ei",
     "mesh",
     "mzv",
+    "needed_by",
     "on_grid",
     "ps_zv",
     "ps_zvd",
@@ -49,6 +56,7 @@ __all__ = [
     "symmetric_three_modes",
     "symmetric_two_modes",
     "synchronised",
+    "taken_by",
     "three_hump_ei",
     "two_hump_ei",
     "um_ei",

@@ -16,7 +16,7 @@ from preshape.design.unity_magnitude import um_ei, um_zv, um_zvd
 from preshape.errors import InputError
 from preshape.shaper import Shaper
 
-__all__ = ["CLOSED_FAMILIES", "FAMILIES", "family_named"]
+__all__ = ["CLOSED_FAMILIES", "FAMILIES", "OTHER_FAMILIES", "family_named"]
 
 CLOSED_FAMILIES: Mapping[str, Callable[..., Shaper]] = MappingProxyType(
     {
@@ -42,6 +42,10 @@ CLOSED_FAMILIES: Mapping[str, Callable[..., Shaper]] = MappingProxyType(
 
 FAMILIES: Mapping[str, Callable[..., Shaper]] = MappingProxyType({**CLOSED_FAMILIES, "direct": direct})
 """Every family that takes modes and returns a shaper."""
+
+
+OTHER_FAMILIES = ("convolved", "antiperiod", "mesh", "si")
+"""What else ``preshape design --family`` takes: designs that are called in another way."""
 
 
 def family_named(name: str) -> Callable[..., Shaper]:

@@ -50,3 +50,4 @@ TARGETS = _by_name(
         JSON,
     )
 )
+"""Every target by the name that `preshape export` knows it by."""

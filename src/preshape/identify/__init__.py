@@ -7,7 +7,7 @@ from preshape.identify.klipper_sweep import Sweep
 from preshape.identify.measurement import Measurement, PrintedSpectrum, Spectrum, TimeSeries
 from preshape.identify.merge_modes import merged_modes
 from preshape.identify.operational_modes import operational_modes
-from preshape.identify.readers import read
+from preshape.identify.readers import read, read_bytes
 from preshape.identify.source_file import MAXIMUM_FILE_SIZE
 from preshape.identify.stabilisation import Stabilisation
 from preshape.identify.welch import spectrum
@@ -26,6 +26,7 @@ __all__ = [
     "merged_modes",
     "operational_modes",
     "read",
+    "read_bytes",
     "ring_down",
     "spectrum",
 ]

@@ -23,11 +23,11 @@ from preshape.identify import (
 )
 from preshape.identify.measurement import Measurement, TimeSeries
 from preshape.identify.sensor_checks import sensor_trouble
-from preshape.identify.source_file import SourceFile, open_source
+from preshape.identify.source_file import SourceFile, open_source, source_in_memory
 from preshape.identify.text import printable
 from preshape.identify.wanted import Wanted
 
-__all__ = ["READERS", "Reader", "read"]
+__all__ = ["READERS", "Reader", "read", "read_bytes"]
 
 
 class Reader(Protocol):
@@ -97,10 +97,37 @@ def read(path: str | os.PathLike[str], *, sample_rate: float | None = None, part
     >>> read(path).sample_rate
     1000.0
     """
+    _check_rate(sample_rate)
+    return _measurement(open_source(path), Wanted(sample_rate, part))
+
+
+def read_bytes(content: bytes, name: str, *, sample_rate: float | None = None, part: str | None = None) -> Measurement:
+    """Read a measurement from the bytes of a file, in memory; everything else as :func:`read`.
+
+    Parameters
+    ----------
+    content : bytes
+        What the file holds.
+    name : str
+        What messages call it.
+    sample_rate, part
+        As for :func:`read`.
+
+    Examples
+    --------
+    >>> read_bytes(b"time,x [g]\\n0.000,0.0\\n0.001,0.5\\n0.002,0.1\\n", "bump.csv").sample_rate
+    1000.0
+    """
+    _check_rate(sample_rate)
+    return _measurement(source_in_memory(content, name), Wanted(sample_rate, part))
+
+
+def _check_rate(sample_rate: float | None) -> None:
     if sample_rate is not None and not (np.isfinite(sample_rate) and sample_rate > 0.0):
         raise InputError(f"sample_rate {sample_rate!r} Hz is not usable: give a finite rate above 0 Hz.")
-    file = open_source(path)
-    wanted = Wanted(sample_rate, part)
+
+
+def _measurement(file: SourceFile, wanted: Wanted) -> Measurement:
     for reader in READERS:
         if reader.recognises(file):
             # Absurd numbers overflow on the way; what they come to is refused, so no warning is needed.

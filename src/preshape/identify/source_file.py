@@ -10,7 +10,7 @@ import io
 import os
 import stat
 from collections.abc import Generator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
@@ -18,7 +18,7 @@ from typing import BinaryIO
 
 from preshape.errors import MeasurementError
 
-__all__ = ["MAXIMUM_FILE_SIZE", "MOST_NUMBERS", "SourceFile", "open_source"]
+__all__ = ["MAXIMUM_FILE_SIZE", "MOST_NUMBERS", "SourceFile", "open_source", "source_in_memory"]
 
 MAXIMUM_FILE_SIZE = 200_000_000
 """Files of this size [bytes] and above are refused before anything is read (about 80 minutes of Klipper raw data)."""
@@ -39,7 +39,7 @@ MARK = b"\xef\xbb\xbf"
 
 @dataclass(frozen=True)
 class SourceFile:
-    """A regular file below the size limit.
+    """A regular file below the size limit, or one that is in memory only.
 
     Attributes
     ----------
@@ -49,11 +49,14 @@ class SourceFile:
         Bytes.
     begin : bytes
         The first of them.
+    content : bytes or None
+        All of them, of a file in memory: nothing is read from a disk then.
     """
 
     name: str
     size: int
     begin: bytes
+    content: bytes | None = field(default=None, repr=False)
 
     @cached_property
     def head(self) -> list[str]:
@@ -101,6 +104,8 @@ class SourceFile:
 
     def data(self) -> bytes:
         """All bytes; no more than the size that was checked."""
+        if self.content is not None:
+            return self.content
         if self.size <= len(self.begin):
             return self.begin
         with self.open() as stream:
@@ -111,6 +116,8 @@ class SourceFile:
 
     def open(self) -> BinaryIO:
         """The file as a stream of bytes."""
+        if self.content is not None:
+            return io.BytesIO(self.content)
         try:
             return Path(self.name).open("rb", buffering=BUFFER)
         except OSError as error:
@@ -133,16 +140,32 @@ def open_source(path: str | os.PathLike[str]) -> SourceFile:
         raise MeasurementError(f"{source}: this is a directory; give the measurement file in it.")
     if not stat.S_ISREG(status.st_mode):
         raise MeasurementError(f"{source}: this is not a regular file; give a measurement file.")
-    if status.st_size >= MAXIMUM_FILE_SIZE:
-        raise MeasurementError(
-            f"{source}: the file has {status.st_size / 1e6:.0f} MB and the limit is below "
-            f"{MAXIMUM_FILE_SIZE / 1e6:.0f} MB; cut the part that holds the vibration."
-        )
+    _check_size(source, status.st_size)
     with SourceFile(source, status.st_size, b"").open() as stream:
         begin = stream.read(BEGINNING)
-    if not begin.strip() and status.st_size <= BEGINNING:
-        raise MeasurementError(f"{source}: the file is empty; record the measurement again.")
+    _check_begin(source, status.st_size, begin)
     return SourceFile(source, status.st_size, begin)
+
+
+def source_in_memory(content: bytes, name: str) -> SourceFile:
+    """A file that came over a network and is in memory; `name` is for messages. Raises as :func:`open_source` does."""
+    _check_size(name, len(content))
+    begin = content[:BEGINNING]
+    _check_begin(name, len(content), begin)
+    return SourceFile(name, len(content), begin, content)
+
+
+def _check_size(name: str, size: int) -> None:
+    if size >= MAXIMUM_FILE_SIZE:
+        raise MeasurementError(
+            f"{name}: the file has {size / 1e6:.0f} MB and the limit is below {MAXIMUM_FILE_SIZE / 1e6:.0f} MB; "
+            "cut the part that holds the vibration."
+        )
+
+
+def _check_begin(name: str, size: int, begin: bytes) -> None:
+    if not begin.strip() and size <= BEGINNING:
+        raise MeasurementError(f"{name}: the file is empty; record the measurement again.")
 
 
 def _lines(text: str) -> list[str]:

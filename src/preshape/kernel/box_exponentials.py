@@ -27,7 +27,7 @@ def box_exponentials(
     rates : ndarray of complex, shape (rate,)
         [1/s], of any real part that is not far below zero.
     moment : int
-        0 or 1.
+        0, 1 or 2.
 
     Returns
     -------
@@ -42,5 +42,10 @@ def box_exponentials(
     width = end - start
     # With t = end - width x the integral over x is phi: exp(s end) width int_0^1 exp(-s width x) dx.
     phi = phi_functions(np.multiply.outer(-np.asarray(rates, dtype=complex), width), moment + 1)
-    values = phi[1] if moment == 0 else start * phi[1] + width * phi[2]
+    # t = start + width (1 - x), and phi_k holds (1 - x)^(k - 1) / (k - 1)!.
+    values = start**moment * phi[1]
+    if moment > 0:
+        values = values + moment * start ** (moment - 1) * width * phi[2]
+    if moment > 1:
+        values = values + 2.0 * width**2 * phi[3]
     return np.asarray((np.exp(np.multiply.outer(rates, end)) * values) @ (density * width))

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from preshape.export import PasteText
 from preshape.export.klipper import KlipperFit, KlipperScore
 from preshape.identify import Identification, IdentifiedMode, PrintedSpectrum
+from preshape.mode import Modes
+from preshape.report.record import CalibrationJob, RecordedFile
 from preshape.report.trade_off import FREQUENCY_ERROR, TradeOff
 from preshape.shaper import Shaper
 
@@ -79,6 +81,15 @@ class SimulatedMove:
         When the commands end [s].
     left : float
         Largest vibration that the shaped move leaves, relative to the unshaped one [-].
+    modes : Modes
+        What was simulated.
+    errors : ndarray, shape (error,)
+        By what part the natural frequencies of the machine are off [-]: low, not at all, high.
+    predicted : ndarray, shape (mode, error)
+        Part of each mode's amplitude that the shaper leaves at the end [-]: its residual vibration V, by formula.
+    simulated : ndarray, shape (mode, error)
+        The same by the simulation: the amplitude after the shaped move over that after the unshaped one [-]; NaN for a
+        mode that the unshaped move leaves at rest.
     """
 
     times: NDArray[np.float64]
@@ -87,6 +98,10 @@ class SimulatedMove:
     end_unshaped: float
     end_shaped: float
     left: float
+    modes: Modes
+    errors: NDArray[np.float64]
+    predicted: NDArray[np.float64]
+    simulated: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -122,6 +137,10 @@ class Calibration:
         What smoothing buys, and the picks within the controller's limits; None where Klipper's measures mean nothing.
     texts : tuple of PasteText
         The chosen shaper for each firmware that takes settings, or why it does not fit; empty as above.
+    job : CalibrationJob
+        The options.
+    inputs : tuple of RecordedFile
+        The files as they were read, for whoever wants to run it again.
     """
 
     files: tuple[MeasuredFile, ...]
@@ -135,6 +154,8 @@ class Calibration:
     move: SimulatedMove | None
     tolerance: float
     maximum_impulses: int | None
+    job: CalibrationJob
+    inputs: tuple[RecordedFile, ...]
     trade_off: TradeOff | None = None
     texts: tuple[PasteText, ...] = ()
 

@@ -9,7 +9,7 @@ import numpy as np
 from preshape.errors import InputError
 from preshape.report.comparison import Comparison, Contender, Kind
 from preshape.report.comparison_table import LengthUnit, comparison_sentences, length_unit, move_sentence
-from preshape.report.figures import ACCENT, INK, MUTED, SECOND, new_figure, tidy
+from preshape.report.figures import ACCENT, GREEN, INK, MUTED, PALE, SECOND, SERIES, new_figure, tidy
 from preshape.report.labels import label_points
 
 if TYPE_CHECKING:
@@ -20,21 +20,12 @@ __all__ = ["comparison_figure"]
 
 LOOKS: dict[Kind, tuple[str, str]] = {
     "unshaped": (INK, "s"),
-    "smooth": ("#2e7d4f", "o"),
+    "smooth": (GREEN, "o"),
     "filtered": (MUTED, "D"),
     "shaped": (ACCENT, "^"),
     "rest-to-rest": (SECOND, "v"),
 }
 """Colour and mark of each kind."""
-
-CURVES = (
-    (INK, "-", 1.4),
-    (ACCENT, "-", 2.4),
-    (SECOND, "--", 2.0),
-    ("#2e7d4f", "-.", 1.8),
-    (MUTED, ":", 2.2),
-    ("#7a4fa0", (0, (6, 1, 1, 1, 1, 1)), 1.6),
-)
 
 DECADES = 4.0
 """How far below the reference vibration is shown; what is less is drawn on the lower edge."""
@@ -170,7 +161,7 @@ def _main(comparison: Comparison) -> list[Contender]:
     for one in wanted:
         if all(one is not other for other in chosen):
             chosen.append(one)
-    return chosen[: len(CURVES)]
+    return chosen[: len(SERIES)]
 
 
 def _curves(axes: Axes, comparison: Comparison, shown: LengthUnit) -> None:
@@ -178,8 +169,8 @@ def _curves(axes: Axes, comparison: Comparison, shown: LengthUnit) -> None:
     percent = 100.0 * (comparison.frequency_ratios - 1.0)
     floor = 10.0**-DECADES * comparison.reference
     error = 100.0 * comparison.frequency_error
-    axes.axvspan(-error, error, color="#f3f3f3", linewidth=0)
-    for one, (colour, style, width) in zip(_main(comparison), CURVES, strict=False):
+    axes.axvspan(-error, error, color=PALE, linewidth=0)
+    for one, (colour, style, width) in zip(_main(comparison), SERIES, strict=False):
         left = np.maximum(one.residual_curve, floor) * shown.per_unit
         axes.plot(percent, left, color=colour, linestyle=style, linewidth=width, label=one.name)
     axes.axhline(comparison.within * shown.per_unit, color=INK, linewidth=0.9, linestyle=(0, (1, 2)))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from preshape.errors import InputError
-from preshape.report.figures import ACCENT, INK, MUTED, SECOND, SOFT, new_figure, tidy
+from preshape.report.figures import INK, MUTED, SERIES, SOFT, new_figure, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["contour_figure"]
 
-STYLES = ((ACCENT, "-", 2.0), (SECOND, "--", 1.6), (INK, ":", 1.8))
-"""Of the paths in their order; grey print tells them apart by their lines."""
+MOST_PATHS = 3
 
 AROUND = 2.5
 """Half the width of the enlarged place, over the largest error."""
@@ -45,8 +44,8 @@ def contour_figure(paths: Mapping[str, ShapedPath], *, names: Sequence[str] = ("
     InputError
         If there are none or more than three, or a path has a single axis.
     """
-    if not 1 <= len(paths) <= len(STYLES):
-        raise InputError(f"{len(paths)} paths were given: the figure shows one to {len(STYLES)}.")
+    if not 1 <= len(paths) <= MOST_PATHS:
+        raise InputError(f"{len(paths)} paths were given: the figure shows one to {MOST_PATHS}.")
     if min(len(path.commanded) for path in paths.values()) < 2:
         raise InputError("a path of one axis is no curve to draw: give two axes or more.")
     errors = {label: path.contour_error() for label, path in paths.items()}
@@ -68,7 +67,7 @@ def contour_figure(paths: Mapping[str, ShapedPath], *, names: Sequence[str] = ("
     across, up = (_with_unit(name, unit) for name in names[:2])
     tidy(whole, across, up, "The path; a ring where the error is largest")
     tidy(close, across, up, f"There, {_factor(size / (2.0 * width))} times enlarged")
-    for (label, path), (colour, line, thick) in zip(paths.items(), STYLES, strict=False):
+    for (label, path), (colour, line, thick) in zip(paths.items(), SERIES, strict=False):
         way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path.shaped, axis=1), axis=0))])
         text = f"{label}: at most {_amount(errors[label], unit, size)}"
         along.plot(way, errors[label].distances, color=colour, linestyle=line, linewidth=thick, label=text)
@@ -85,7 +84,7 @@ def _paths(axes: Axes, paths: Mapping[str, ShapedPath]) -> None:
     commanded = next(iter(paths.values())).commanded
     axes.plot(commanded[0], commanded[1], color=SOFT, linewidth=6.0, solid_capstyle="round")
     axes.plot(commanded[0], commanded[1], color=MUTED, linewidth=0.8)
-    for path, (colour, line, thick) in zip(paths.values(), STYLES, strict=False):
+    for path, (colour, line, thick) in zip(paths.values(), SERIES, strict=False):
         axes.plot(path.shaped[0], path.shaped[1], color=colour, linestyle=line, linewidth=thick)
 
 

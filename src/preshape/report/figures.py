@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from preshape.errors import InputError
 
@@ -13,7 +13,25 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["ACCENT", "INK", "MUTED", "SECOND", "SOFT", "as_svg", "figure_bytes", "figure_format", "new_figure", "tidy"]
+__all__ = [
+    "ACCENT",
+    "GREEN",
+    "INK",
+    "MUTED",
+    "PALE",
+    "SECOND",
+    "SERIES",
+    "SOFT",
+    "WINE",
+    "as_svg",
+    "figure_bytes",
+    "figure_format",
+    "new_figure",
+    "tidy",
+]
+
+Line: TypeAlias = str | tuple[int, tuple[int, ...]]
+"""A line style of matplotlib: its name, or the lengths of dashes and gaps."""
 
 FORMATS = ("svg", "png", "pdf")
 
@@ -24,8 +42,22 @@ ACCENT = "#0b5fa5"
 """The shaper that was chosen: dark blue, dark grey in print."""
 SECOND = "#d1690e"
 """What it is compared with: orange, mid grey in print; always dashed as well."""
+GREEN, WINE = "#1ca55d", "#722955"
 MUTED = "#8a8a8a"
 SOFT = "#d9d9d9"
+PALE = "#f3f3f3"
+"""Behind curves: a stretch of time or of frequency that is spoken of."""
+
+SERIES: tuple[tuple[str, Line, float], ...] = (
+    (ACCENT, "-", 2.2),
+    (SECOND, "--", 1.8),
+    (INK, ":", 1.9),
+    (GREEN, "-.", 1.8),
+    (WINE, (0, (6, 1, 1, 1, 1, 1)), 1.6),
+    (MUTED, (0, (8, 2)), 1.4),
+)
+"""Colour, line and width of the curves of one figure, in order: each has a line of its own, for grey print, and the
+colours were chosen to stay apart for people who do not see red, green or blue (tests/report/test_figure_style.py)."""
 
 
 def new_figure(width: float, height: float) -> Figure:

@@ -30,8 +30,16 @@ DIRECTIONS = 16
 LEADER_FROM = 14.0
 """A label farther away than this, in points, is tied to its point by a line."""
 
+BEAD = 3.0
+"""Distance of the squares that stand for such a line, in points."""
 
-def label_points(axes: Axes, labels: Sequence[tuple[float, float, str]], size: float = 8.0) -> None:
+
+def label_points(
+    axes: Axes,
+    labels: Sequence[tuple[float, float, str]],
+    size: float = 8.0,
+    avoid: Sequence[tuple[float, float]] = (),
+) -> None:
     """Write the labels, each as near its point as there is room.
 
     Parameters
@@ -42,6 +50,8 @@ def label_points(axes: Axes, labels: Sequence[tuple[float, float, str]], size: f
         Points in data coordinates.
     size : float
         Of the type, in points.
+    avoid : sequence of (x, y)
+        Other points that no label may hide; nor does one hide the legend of the axes.
     """
     figure = axes.get_figure(root=True)
     assert figure is not None
@@ -51,11 +61,17 @@ def label_points(axes: Axes, labels: Sequence[tuple[float, float, str]], size: f
     edges = axes.get_window_extent()
     frame = np.array([edges.x0, edges.y0, edges.x1, edges.y1]) * scale
     taken = [np.array([x - POINT, y - POINT, x + POINT, y + POINT]) for x, y in centres]
+    others = [axes.transData.transform(point) * scale for point in avoid]
+    taken += [np.array([x - POINT, y - POINT, x + POINT, y + POINT]) for x, y in others]
+    if (legend := axes.get_legend()) is not None:
+        covered = legend.get_window_extent()
+        taken.append(np.array([covered.x0, covered.y0, covered.x1, covered.y1]) * scale)
     for (x, y, text), centre in zip(labels, centres, strict=True):
         box = np.array([LETTER * size * len(text), LINE * size])
         place, offset = _place(centre, box, taken, frame)
-        taken.append(place)
-        far = float(np.hypot(*_gap(centre, place))) > LEADER_FROM
+        leader = _leader(centre, place)
+        taken += [place, *leader]
+        far = bool(leader)
         axes.annotate(
             text,
             (x, y),
@@ -81,13 +97,24 @@ def _place(
             offset = way * distance + 0.5 * box * np.clip(1.5 * way, -1.0, 1.0)
             place = np.concatenate([centre + offset - 0.5 * box, centre + offset + 0.5 * box])
             outside = (place[:2] < frame[:2]).any() or (place[2:] > frame[2:]).any()
-            covered = sum(_overlap(place, other) for other in taken) + (1e6 if outside else 0.0)
+            hidden = [_overlap(part, other) for part in (place, *_leader(centre, place)) for other in taken]
+            covered = sum(hidden) + (1e6 if outside else 0.0)
             if covered < least:
                 best, least = (place, offset), covered
         if least == 0.0:
             break
     assert best is not None
     return best
+
+
+def _leader(centre: NDArray[np.float64], place: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    """The line from a far label, on the way to its middle, to its point, as small squares; none of a near one."""
+    if float(np.hypot(*_gap(centre, place))) <= LEADER_FROM:
+        return []
+    way = 0.5 * (place[:2] + place[2:]) - centre
+    spots = [centre + part * way for part in np.arange(POINT + 1.0, float(np.hypot(*way)), BEAD) / np.hypot(*way)]
+    outside = [spot for spot in spots if (spot < place[:2]).any() or (spot > place[2:]).any()]
+    return [np.concatenate([spot - 0.5, spot + 0.5]) for spot in outside]
 
 
 def _overlap(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from preshape.plant import Output
-from preshape.report.figures import ACCENT, INK, MUTED, SECOND, new_figure, tidy
+from preshape.report.figures import ACCENT, INK, MUTED, SECOND, SERIES, new_figure, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,8 +27,8 @@ SAMPLES = 2001
 AT_REST = 1e-6
 """Vibration left below this part of what a step of the maximum force leaves is none."""
 
-LINES = ("-", "--", ":", "-.")
-"""Of several deflections, so that grey print tells them apart."""
+CURVES = (SERIES[0], *SERIES[2:])
+"""Of several deflections; the second look is the limits'."""
 
 
 def move_figure(move: RestToRest) -> Figure:
@@ -65,10 +65,10 @@ def _force(axes: Axes, move: RestToRest, end: float) -> None:
 
 def _deflection(axes: Axes, move: RestToRest, motion: Motion, times: NDArray[np.float64]) -> None:
     rows = move.settings.get("outputs", np.eye(len(move.body.modes)).tolist())
-    colours = (ACCENT, INK, MUTED)
     for k, row in enumerate(rows):
-        (line,) = axes.plot(times, motion(Output(tuple(row)), times), linewidth=1.8, label=f"deflection {k + 1}")
-        line.set(color=colours[k % 3], linestyle=LINES[k % 4])
+        colour, line, width = CURVES[k % len(CURVES)]
+        values = motion(Output(tuple(row)), times)
+        axes.plot(times, values, color=colour, linestyle=line, linewidth=width, label=f"deflection {k + 1}")
     limits = [limit for limit in move.settings.get("deflection_limits", ()) if np.isfinite(limit)]
     for limit in sorted(set(limits)):
         for side in (-limit, limit):

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from preshape.report.figures import ACCENT, INK, MUTED, SECOND, new_figure, tidy
+from preshape.report.labels import label_points
 from preshape.report.trade_off import TradeOff, TradePoint
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["TRADE_OFF_TITLE", "trade_off_figure"]
+__all__ = ["trade_off_figure"]
 
 TRADE_OFF_TITLE = "What smoothing buys"
 
@@ -55,9 +55,8 @@ def trade_off_figure(trade: TradeOff) -> Figure:
         group = [one for one in shown if one.name.startswith("Klipper ") == own]
         if group:
             x, y = _places(group)
-            face = MUTED if own else "white"
-            axes.plot(x, y, marker, color=MUTED, markerfacecolor=face, markersize=6, label=label, zorder=4)
-    _names(axes, shown, high - low)
+            (marks,) = axes.plot(x, y, marker, color=MUTED, markersize=6, label=label, zorder=4)
+            marks.set(markerfacecolor=MUTED if own else "white", clip_on=False)  # whole at the end of the axis
     x, y = _places([trade.stock])
     stock = f"stock choice: {trade.stock.name.removeprefix('Klipper ')}"
     axes.plot(x, y, "D", color=SECOND, markersize=9, markeredgecolor=INK, label=stock, zorder=5)
@@ -67,8 +66,8 @@ def trade_off_figure(trade: TradeOff) -> Figure:
         label = f"{name}: max_accel {pick.score.maximum_acceleration:.0f} mm/s²"
         size = 14 if marker == "*" else 10
         axes.plot(x, y, marker, color=ACCENT, markersize=size, markeredgecolor=INK, label=label, zorder=6)
-    everything = [*trade.optimum, *shown, trade.stock, *trade.picks]
-    top = max(LEAST_HEIGHT, *(one.score.remaining_vibration for one in everything))
+    drawn = [*trade.optimum, *shown, trade.stock, *trade.picks]
+    top = max(LEAST_HEIGHT, *(one.score.remaining_vibration for one in drawn))
     axes.axhline(100.0 * trade.allowed, color=INK, linewidth=0.9, linestyle=(0, (1, 2)), zorder=1)
     axes.set_xlim(low, high)
     axes.set_ylim(-4.0 * top, 120.0 * top)
@@ -81,6 +80,7 @@ def trade_off_figure(trade: TradeOff) -> Figure:
         f"{TRADE_OFF_TITLE}; at no more vibration and smoothing than stock: {gain}",
     )
     axes.legend(fontsize=8.5, loc="upper right", frameon=True, framealpha=0.9, edgecolor="white")
+    label_points(axes, _names(shown, high - low), avoid=list(zip(*_places(drawn), strict=True)))
     return figure
 
 
@@ -100,8 +100,8 @@ def _front(points: Sequence[TradePoint]) -> list[TradePoint]:
     return front
 
 
-def _names(axes: Axes, shown: Sequence[TradePoint], width: float) -> None:
-    """Short names; marks that lie together share a label."""
+def _names(shown: Sequence[TradePoint], width: float) -> list[tuple[float, float, str]]:
+    """Short names and where they belong; marks that lie together share a label."""
     top = max((one.score.remaining_vibration for one in shown), default=0.0)
     groups: list[list[TradePoint]] = []
     for one in sorted(shown, key=lambda one: one.score.smoothing):
@@ -113,14 +113,8 @@ def _names(axes: Axes, shown: Sequence[TradePoint], width: float) -> None:
                 break
         else:
             groups.append([one])
+    named = []
     for group in groups:
         names = dict.fromkeys(one.name.removeprefix("Klipper ").replace(" Hz", "") for one in group)
-        axes.annotate(
-            ", ".join(names),
-            (group[0].score.smoothing, 100.0 * group[0].score.remaining_vibration),
-            xytext=(1, 6),
-            textcoords="offset points",
-            rotation=62,  # steep, so that neighbours do not touch
-            fontsize=7.5,
-            color=INK,
-        )
+        named.append((group[0].score.smoothing, 100.0 * group[0].score.remaining_vibration, ", ".join(names)))
+    return named

@@ -13,6 +13,7 @@ from preshape.vibration.residual import (
 )
 from preshape.vibration.rest_to_rest import bang_bang_of_the_same_move, command_vibration
 from preshape.vibration.settling import Settling, settling
+from preshape.vibration.zeros import ShaperZero, zeros_near
 
 __all__ = [
     "CommandInsensitivity",
@@ -20,6 +21,7 @@ __all__ = [
     "Insensitivity",
     "Sensitivity",
     "Settling",
+    "ShaperZero",
     "bang_bang_of_the_same_move",
     "command_insensitivity",
     "command_vibration",
@@ -34,4 +36,5 @@ __all__ = [
     "settling",
     "tolerated_bands",
     "total_insensitivity",
+    "zeros_near",
 ]

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from preshape.checks import tolerance_of
 from preshape.mode import ModesLike, one_mode
-from preshape.vibration.insensitivity import HIGHEST_RATIO, SAMPLES_PER_RIPPLE, TOUCHING
+from preshape.vibration.band_edge import SAMPLES_PER_RIPPLE, TOUCHING
+from preshape.vibration.insensitivity import HIGHEST_RATIO
 from preshape.vibration.rest_to_rest import (
     LEAVES_NOTHING,
     Reference,

@@ -6,26 +6,18 @@ Band edges are roots of V(f) - tolerance between the located extrema of V, never
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from preshape.checks import tolerance_of
+from preshape.checks import positive, tolerance_of
 from preshape.errors import InputError
 from preshape.mode import ModesLike, one_mode
 from preshape.shaper import Shaper
+from preshape.vibration.band_edge import SAMPLES_PER_RIPPLE, TOUCHING, curve_functions, root, tolerated_until
 from preshape.vibration.residual import checked_frequency_and_damping, residual_vibration
-from preshape.vibration.transform import transform
 
 __all__ = ["Insensitivity", "insensitivity", "tolerated_bands", "total_insensitivity"]
-
-TOUCHING = 1e-8
-"""A hump of V higher than the tolerance by less than this fraction only touches it (EI shapers are built to touch)."""
-
-SAMPLES_PER_RIPPLE = 32
-"""Samples per 1/duration of frequency when extrema of V are searched; V^2 has no faster ripple than 1/duration."""
 
 HIGHEST_RATIO = 64.0
 """Insensitivity is searched up to this multiple of the mode's frequency; a band still open there is infinite."""
@@ -73,12 +65,12 @@ def tolerated_bands(
     f_low, f_high = (float(value) for value in checked_frequency_and_damping([low, high], damping)[0])
     if f_high <= f_low:
         raise InputError(f"the range {low:g} ... {high:g} Hz is empty: give the lower frequency first.")
-    vibration, slope = _curve_functions(shaper, damping)
+    vibration, slope = curve_functions(shaper, damping)
     count = int(np.ceil((f_high - f_low) * shaper.duration * SAMPLES_PER_RIPPLE)) + 2
     grid = np.linspace(f_low, f_high, count)
     slopes = slope(grid)
     turning = [
-        _root(lambda f: float(slope(np.array([f]))[0]), grid[k], grid[k + 1])
+        root(lambda f: float(slope(np.array([f]))[0]), grid[k], grid[k + 1])
         for k in np.flatnonzero((slopes[:-1] >= 0.0) != (slopes[1:] >= 0.0))
     ]
     nodes = np.unique([f_low, *turning, f_high])
@@ -90,13 +82,15 @@ def tolerated_bands(
         if ends[0] * ends[1] > 0.0:
             edges.append(float(nodes[k + int(above[k])]))  # the lower end only touches: it is the edge
         else:
-            edges.append(_root(lambda f: float(vibration(np.array([f]))[0]) - tolerance, nodes[k], nodes[k + 1]))
+            edges.append(root(lambda f: float(vibration(np.array([f]))[0]) - tolerance, nodes[k], nodes[k + 1]))
     if not above[-1]:
         edges.append(f_high)
     return list(zip(edges[::2], edges[1::2], strict=True))
 
 
-def insensitivity(shaper: Shaper, mode: ModesLike, tolerance: float = 0.05) -> Insensitivity:
+def insensitivity(
+    shaper: Shaper, mode: ModesLike, tolerance: float = 0.05, *, highest: float | None = None
+) -> Insensitivity:
     """The band of natural frequency around `mode` in which V <= `tolerance`, at the mode's damping ratio.
 
     Parameters
@@ -107,6 +101,9 @@ def insensitivity(shaper: Shaper, mode: ModesLike, tolerance: float = 0.05) -> I
         The centre; frequency [Hz].
     tolerance : float
         V allowed [-], between 0 and 1.
+    highest : float, optional
+        Where to stop looking [Hz], above the mode; a band still open there is infinite. 64 times the mode's frequency
+        unless given.
 
     Examples
     --------
@@ -119,15 +116,14 @@ def insensitivity(shaper: Shaper, mode: ModesLike, tolerance: float = 0.05) -> I
     f = centre.frequency
     if float(residual_vibration(shaper, f, centre.damping)) > tolerance * (1.0 + TOUCHING):
         return Insensitivity(f, f, 0.0)
-    reach = 2.0
-    while True:
-        bands = tolerated_bands(shaper, tolerance, centre.damping, 0.0, reach * f)
-        low, high = next((a, b) for a, b in bands if a <= f * (1.0 + TOUCHING) and f <= b * (1.0 + TOUCHING))
-        if high < reach * f:
-            return Insensitivity(low, high, (high - low) / f)
-        if reach >= HIGHEST_RATIO:
-            return Insensitivity(low, math.inf, math.inf)
-        reach *= 2.0
+    low = tolerated_until(shaper, tolerance, centre, 0.0)
+    end = HIGHEST_RATIO * f if highest is None else positive("highest", highest, "Hz")
+    if end <= f:
+        raise InputError(f"highest is {end:g} Hz, which is not above the mode: give more than {f:g} Hz.")
+    high = tolerated_until(shaper, tolerance, centre, end)
+    if high >= end:
+        return Insensitivity(low, math.inf, math.inf)
+    return Insensitivity(low, high, (high - low) / f)
 
 
 def total_insensitivity(
@@ -166,35 +162,3 @@ def total_insensitivity(
 
     area, _ = quad(width, z_low, z_high, epsabs=1e-7, epsrel=1e-6, limit=200)
     return float(area)
-
-
-def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    """The root between two frequencies at which, evaluated among others, the function had different signs.
-
-    Evaluated alone, a value that is only rounding (the slope on the top of an EI hump) can have the other sign: then
-    that end is the root.
-    """
-    from scipy.optimize import brentq
-
-    at_low, at_high = function(low), function(high)
-    if at_low * at_high > 0.0:
-        return float(low if abs(at_low) <= abs(at_high) else high)
-    return float(brentq(function, low, high, xtol=1e-15, rtol=8.9e-16))
-
-
-def _curve_functions(
-    shaper: Shaper, damping: float
-) -> tuple[Callable[[NDArray[np.float64]], NDArray[np.float64]], Callable[[NDArray[np.float64]], NDArray[np.float64]]]:
-    """V(f) and d(V^2)/df as functions of frequencies [Hz] at one damping ratio."""
-    rate = 2.0 * math.pi * complex(damping, math.sqrt(1.0 - damping**2))
-    end = shaper.duration
-
-    def value(f: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.abs(transform(shaper, np.multiply(rate, f), origin=end))
-
-    def slope(f: NDArray[np.float64]) -> NDArray[np.float64]:
-        base = transform(shaper, np.asarray(rate * f), origin=end)
-        change = rate * transform(shaper, np.asarray(rate * f), origin=end, moment=1)
-        return 2.0 * np.real(base.conj() * change)
-
-    return value, slope

@@ -26,27 +26,29 @@ def transform(
         From when times are counted [s]; the shaper's duration, so that nothing overflows where s has a positive real
         part.
     moment : int
-        0, or 1 for the derivative with respect to s.
+        0, or 1 and 2 for derivatives with respect to s.
 
     Returns
     -------
     ndarray of complex, shape (rate,)
     """
     times = shaper.times - origin
-    weights = shaper.amplitudes * times if moment else shaper.amplitudes
+    weights = shaper.amplitudes * times**moment if moment else shaper.amplitudes
     values = exponential_sum(weights, times, rates)
     return values + box_exponentials(_boxes(shaper, origin), rates, moment) if shaper.boxes else values
 
 
 def transform_uniform(
-    shaper: Shaper, first: complex, step: complex, count: int, *, origin: float = 0.0
+    shaper: Shaper, first: complex, step: complex, count: int, *, origin: float = 0.0, moment: int = 0
 ) -> NDArray[np.complex128]:
     """The same at the `count` rates first, first + step, ..., with few exponentials for the impulses."""
-    values = exponential_sum_uniform(shaper.amplitudes, shaper.times - origin, first, step, count)
+    times = shaper.times - origin
+    weights = shaper.amplitudes * times**moment if moment else shaper.amplitudes
+    values = exponential_sum_uniform(weights, times, first, step, count)
     if not shaper.boxes:
         return values
     rates: NDArray[np.complex128] = first + step * np.arange(count, dtype=complex)
-    return values + box_exponentials(_boxes(shaper, origin), rates)
+    return values + box_exponentials(_boxes(shaper, origin), rates, moment)
 
 
 def _boxes(shaper: Shaper, origin: float) -> NDArray[np.float64]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from pathlib import Path
 
 import numpy as np
 
@@ -13,11 +12,12 @@ from preshape.checks import tolerance_of
 from preshape.errors import InputError
 from preshape.export import klipper, paste_ready
 from preshape.mode import Mode, Modes
-from preshape.report import Calibration, MeasuredFile
+from preshape.report import Calibration, CalibrationJob, MeasuredFile
 from preshape.workflow.candidates import designed_candidates
 from preshape.workflow.choose import choose, ranked
 from preshape.workflow.design_within import room_of
 from preshape.workflow.mixed_files import mixed_up
+from preshape.workflow.record import recorded_files
 from preshape.workflow.remaining import lines_to_still
 from preshape.workflow.simulate import simulate_move
 from preshape.workflow.spectra import scored_spectrum
@@ -93,7 +93,8 @@ def calibrate(
     if damping is not None:
         Mode(1.0, damping)  # says what is wrong with it
     measurements = [identify.read(path, sample_rate=sample_rate, part=part) for path in paths]
-    names = [Path(path).name for path in paths]
+    inputs = recorded_files(paths)
+    names = [one.name for one in inputs]
     measured = tuple(_measured(name, one, damping, excitation) for name, one in zip(names, measurements, strict=True))
     modes = identify.merged_modes([file.identification for file in measured])
     spectra = klipper.as_spectra([(file.scored.frequencies, file.scored.power) for file in measured])
@@ -141,9 +142,22 @@ def calibrate(
         klipper=stock,
         trouble=trouble,
         clear=clear,
-        move=simulate_move(chosen.shaper, modes) if modes else None,
+        move=simulate_move(chosen.shaper, Modes([one.mode for one in modes]), [one.share for one in modes])
+        if modes
+        else None,
         tolerance=tolerance,
         maximum_impulses=maximum_impulses,
+        job=CalibrationJob(
+            maximum_impulses=maximum_impulses,
+            tolerance=tolerance,
+            damping=damping,
+            sample_rate=sample_rate,
+            part=part,
+            excitation=excitation,
+            mixed=mixed,
+            axis=axis,
+        ),
+        inputs=inputs,
         trade_off=trade_off,
         texts=() if advice is None else paste_ready(chosen.shaper, axis),
     )

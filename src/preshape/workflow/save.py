@@ -5,35 +5,34 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 
 from preshape.errors import InputError
-from preshape.export import TARGETS, SettingsTarget
-from preshape.export.klipper import OPTIMUM
-from preshape.export.settings_target import MARK
 from preshape.files import write_atomically
 from preshape.report import (
-    TRADE_OFF_TITLE,
     Calibration,
+    Document,
+    Record,
+    as_html,
+    as_pdf,
     as_svg,
+    calibration_document,
     calibration_figure,
-    calibration_page,
+    can_make_pdf,
     trade_off_figure,
 )
 from preshape.shaper import Shaper
-from preshape.shaper_file import to_json
+from preshape.workflow.outdated import set_aside
+from preshape.workflow.record import new_record
 
-__all__ = ["SavedCalibration", "save_calibration"]
+__all__ = ["SavedCalibration", "make_folders", "save_calibration", "save_design"]
 
 SETTINGS = "settings"
 """The folder below which each firmware has its own."""
 
+PDF = "report.pdf"
 TRADE_OFF = "trade_off.svg"
 PICKS = ("performance", "quality", "improved")
-
-LARGEST = 1_000_000
-"""Bytes; an older file with more is none of ours."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +43,8 @@ class SavedCalibration:
     ----------
     shaper, figure, report : Path
         shaper.json, calibration.svg, report.html.
+    pdf : Path or None
+        report.pdf, if it was made.
     trade_off : Path or None
         trade_off.svg, if there is a trade-off.
     picks : tuple of Path
@@ -55,15 +56,67 @@ class SavedCalibration:
     shaper: Path
     figure: Path
     report: Path
+    pdf: Path | None = None
     trade_off: Path | None = None
     picks: tuple[Path, ...] = ()
     settings: tuple[Path, ...] = ()
 
 
-def save_calibration(calibration: Calibration, folder: str | os.PathLike[str]) -> SavedCalibration:
+def save_calibration(
+    calibration: Calibration,
+    folder: str | os.PathLike[str],
+    *,
+    command_line: str = "",
+    pdf: bool | None = None,
+    record: Record | None = None,
+) -> SavedCalibration:
     """Write the results into `folder`, which is made if it does not exist.
 
     Everything is rendered before the first file is written, and each file replaces an older one only when complete.
+
+    Parameters
+    ----------
+    calibration : Calibration
+        From :func:`preshape.workflow.calibrate`.
+    folder : path
+        Where to.
+    command_line : str
+        As it was typed, for the report.
+    pdf : bool, optional
+        Whether to write report.pdf too, which needs Typst; unless given, where that is installed.
+    record : Record, optional
+        What the report is to say of its making; here and now unless given.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made or written, or a PDF is asked for without Typst.
+    """
+    target = Path(folder)
+    trade = calibration.trade_off
+    figure = as_svg(calibration_figure(calibration))
+    second = None if trade is None else as_svg(trade_off_figure(trade))
+    known = record or new_record(calibration.job, calibration.shaper, calibration.inputs, command_line)
+    report = calibration_document(calibration, known, figure, second)
+    page, sheets = as_html(report), as_pdf(report) if (can_make_pdf() if pdf is None else pdf) else None
+    settings = {target / SETTINGS / name: content for text in calibration.texts for name, content in text.files.items()}
+    make_folders([target, *sorted({path.parent for path in settings})])
+    saved = SavedCalibration(
+        shaper=calibration.shaper.save(target / "shaper.json"),
+        figure=write_atomically(target / "calibration.svg", figure),
+        report=write_atomically(target / "report.html", page),
+        pdf=None if sheets is None else write_atomically(target / PDF, sheets),
+        trade_off=None if second is None else write_atomically(target / TRADE_OFF, second),
+        picks=() if trade is None else tuple(pick.shaper.save(target / f"{pick.name}.json") for pick in trade.picks),
+        settings=tuple(write_atomically(path, content) for path, content in settings.items()),
+    )
+    names = (PDF, TRADE_OFF, *(f"{name}.json" for name in PICKS))
+    set_aside(target, names, target / SETTINGS, (saved.pdf, saved.trade_off, *saved.picks, *saved.settings))
+    return saved
+
+
+def save_design(shaper: Shaper, report: Document | None, folder: str | os.PathLike[str]) -> None:
+    """Write shaper.json, and report.html and, where Typst is installed, report.pdf, into `folder`, which is made.
 
     Raises
     ------
@@ -71,25 +124,19 @@ def save_calibration(calibration: Calibration, folder: str | os.PathLike[str]) -
         If the folder cannot be made or written.
     """
     target = Path(folder)
-    trade = calibration.trade_off
-    figure = as_svg(calibration_figure(calibration))
-    second = None if trade is None else as_svg(trade_off_figure(trade))
-    page = calibration_page(calibration, version("preshape"), figure, second)
-    settings = {target / SETTINGS / name: content for text in calibration.texts for name, content in text.files.items()}
-    _make_folders([target, *sorted({path.parent for path in settings})])
-    saved = SavedCalibration(
-        shaper=calibration.shaper.save(target / "shaper.json"),
-        figure=write_atomically(target / "calibration.svg", figure),
-        report=write_atomically(target / "report.html", page),
-        trade_off=None if second is None else write_atomically(target / TRADE_OFF, second),
-        picks=() if trade is None else tuple(pick.shaper.save(target / f"{pick.name}.json") for pick in trade.picks),
-        settings=tuple(write_atomically(path, content) for path, content in settings.items()),
-    )
-    _remove_outdated(target, saved)
-    return saved
+    pages: dict[str, bytes] = {}
+    if report is not None:
+        pages["report.html"] = as_html(report).encode()
+        if can_make_pdf():
+            pages[PDF] = as_pdf(report)
+    make_folders([target])
+    shaper.save(target / "shaper.json")
+    for name, content in pages.items():
+        write_atomically(target / name, content)
 
 
-def _make_folders(folders: Iterable[Path]) -> None:
+def make_folders(folders: Iterable[Path]) -> None:
+    """Make those that are not there; InputError when one cannot be made."""
     for folder in folders:
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -97,34 +144,3 @@ def _make_folders(folders: Iterable[Path]) -> None:
             raise InputError(
                 f"cannot make the folder {folder}: {error.strerror or error}; choose another with --out."
             ) from error
-
-
-def _remove_outdated(target: Path, saved: SavedCalibration) -> None:
-    """What an earlier run left and this one does not have: nobody should paste or export it. A file that does not bear
-    our mark stays."""
-    folders = [target / SETTINGS / name for name, one in TARGETS.items() if isinstance(one, SettingsTarget)]
-    old = {path: _is_settings for folder in folders for path in folder.glob("*")}
-    old |= {target / f"{name}.json": _is_pick for name in PICKS}
-    old[target / TRADE_OFF] = _is_trade_off
-    for path in old.keys() - {*saved.settings, *saved.picks, saved.trade_off}:
-        try:
-            if path.is_file() and path.stat().st_size < LARGEST and old[path](path):
-                path.unlink()
-        except (OSError, UnicodeDecodeError, InputError):
-            continue  # not of a calibration, or not ours to remove
-
-
-def _is_settings(path: Path) -> bool:
-    """Settings bear the mark; Klipper's module does not, and may stay, for it holds no impulses."""
-    return MARK.search(path.read_text()[:200]) is not None
-
-
-def _is_pick(path: Path) -> bool:
-    """A pick as it was saved, to the letter; one that somebody has changed is no longer ours."""
-    shaper = Shaper.load(path)
-    return shaper.design.family == OPTIMUM and path.read_text() == to_json(shaper.to_dict())
-
-
-def _is_trade_off(path: Path) -> bool:
-    text = path.read_text()
-    return text.startswith("<svg") and f"<!-- {TRADE_OFF_TITLE}" in text

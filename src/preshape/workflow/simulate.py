@@ -1,17 +1,18 @@
-"""The chosen shaper on the identified modes, during a point-to-point move: exact, no time step."""
+"""A shaper on modes, during a point-to-point move: exact, no time step."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from preshape.identify import IdentifiedMode
 from preshape.mode import Modes
 from preshape.plant import ModalPlant
 from preshape.profile import Profile
-from preshape.report import SimulatedMove
+from preshape.report import FREQUENCY_ERROR, SimulatedMove
 from preshape.shaper import Shaper
+from preshape.vibration import residual_vibration
 
 __all__ = ["simulate_move"]
 
@@ -24,34 +25,50 @@ SHOWN_PERIODS = 6.0
 SAMPLES = 1600
 
 
-def simulate_move(shaper: Shaper, modes: Sequence[IdentifiedMode]) -> SimulatedMove:
-    """A trapezoidal velocity move of the base that carries the modes, each weighted by its measured share.
+AT_REST = 1e-4
+"""A mode that keeps less than this part of what one step of acceleration leaves has no ratio."""
+
+
+def simulate_move(shaper: Shaper, modes: Modes, shares: Sequence[float]) -> SimulatedMove:
+    """A trapezoidal velocity move of the base that carries the modes, each weighted by its share of the vibration.
 
     The acceleration is a staircase of four steps, shaped exactly. What is shown is the sum of the modes' vibration
-    accelerations, as a sensor on the machine sees it.
+    accelerations, as a sensor on the machine sees it. What each mode keeps is told twice: by the formula of the
+    residual vibration, which knows the shaper only, and by the motion of the mode under the two commands.
     """
-    wanted = Modes([mode.mode for mode in modes])
-    period = max(1.0 / mode.frequency for mode in wanted)
+    period = max(1.0 / mode.frequency for mode in modes)
     switches = np.cumsum([0.0, ACCELERATING, CRUISING, ACCELERATING]) * period
     steps = np.array([1.0, -1.0, -1.0, 1.0])
     end = float(switches[-1])
     times = np.linspace(0.0, end + shaper.duration + SHOWN_PERIODS * period, SAMPLES)
     # A mode's own vibration acceleration is w^2 times its deflection (the base's acceleration is the command's).
-    weights = np.array([np.sqrt(mode.share) * mode.mode.omega**2 for mode in modes])
-    plant = ModalPlant(wanted, weights, drive="acceleration")
+    weights = np.sqrt(np.asarray(shares, dtype=float)) * np.array([mode.omega for mode in modes]) ** 2
     command = Profile.steps(switches, steps)
-
-    def vibration(acceleration: Profile) -> tuple[np.ndarray, float]:
-        motion = plant.motion(acceleration)
-        return motion("output", times), float(weights @ motion.residual_amplitudes)
-
-    unshaped, left_unshaped = vibration(command)
-    shaped, left_shaped = vibration(command.shaped(shaper))
+    commands = (command, command.shaped(shaper))
+    before, after = (ModalPlant(modes, weights, drive="acceleration").motion(one) for one in commands)
+    left = float(weights @ before.residual_amplitudes)
+    errors = np.array([-FREQUENCY_ERROR, 0.0, FREQUENCY_ERROR])
+    frequencies = np.multiply.outer([mode.frequency for mode in modes], 1.0 + errors)
+    dampings = np.array([[mode.damping] for mode in modes])
     return SimulatedMove(
         times=times,
-        unshaped=unshaped / left_unshaped,
-        shaped=shaped / left_unshaped,
+        unshaped=before("output", times) / left,
+        shaped=after("output", times) / left,
         end_unshaped=end,
         end_shaped=end + shaper.duration,
-        left=left_shaped / left_unshaped,
+        left=float(weights @ after.residual_amplitudes) / left,
+        modes=modes,
+        errors=errors,
+        predicted=residual_vibration(shaper, frequencies, dampings),
+        simulated=np.stack([_kept(commands, zip(column, dampings[:, 0], strict=True)) for column in frequencies.T], 1),
     )
+
+
+def _kept(commands: Iterable[Profile], modes: Iterable[tuple[float, float]]) -> NDArray[np.float64]:
+    """Amplitude after the second command over that after the first, shape (mode,)."""
+    plant = ModalPlant(list(modes), drive="acceleration")
+    before, after = (plant.motion(one).residual_amplitudes for one in commands)
+    moved = before * np.array([mode.omega**2 for mode in plant.modes]) > AT_REST
+    ratio = np.full(before.shape, np.nan)
+    np.divide(after, before, out=ratio, where=moved)
+    return ratio

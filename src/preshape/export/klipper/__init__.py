@@ -11,7 +11,7 @@ from preshape.export.klipper.families import (
     zv,
     zvd,
 )
-from preshape.export.klipper.optimum import OPTIMUM, Optimiser, ScoredShaper, scaled_to_smoothing
+from preshape.export.klipper.optimum import Optimiser, ScoredShaper, scaled_to_smoothing
 from preshape.export.klipper.polish import Asked, Room
 from preshape.export.klipper.recommend import KlipperRecommendation, fit, recommend
 from preshape.export.klipper.scoring import (
@@ -35,7 +35,6 @@ __all__ = [
     "TESTED_DAMPINGS",
     "DEFAULT_DAMPING",
     "FAMILIES",
-    "OPTIMUM",
     "AccelerationSpectrum",
     "Asked",
     "KlipperFamily",

@@ -16,7 +16,7 @@ from preshape.mode import Modes
 from preshape.provenance import Design
 from preshape.shaper import Shaper
 
-__all__ = ["OPTIMUM", "Optimiser", "ScoredShaper", "scaled_to_smoothing"]
+__all__ = ["Optimiser", "ScoredShaper", "scaled_to_smoothing"]
 
 OPTIMUM = "spectrum optimum"
 """What the design record of such a shaper calls its family."""
