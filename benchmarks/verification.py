@@ -51,7 +51,8 @@ def study(kind: str, noise: float, seed: int, pairs: int, obeys: bool) -> str:
     verdicts = f"; less or more than predicted {false}" if obeys else ""
     return (
         f"{kind:8} noise {noise:.3g} {'obeys' if obeys else 'other shaper':12} pairs {pairs} ({failed} refused): "
-        f"stop off by over 1 ms in {wrong}, by over two stated standard deviations in {outside}; intervals hold {held} of {judged}{verdicts}"
+        f"stop off by over 1 ms in {wrong}, by over two stated "
+        f"standard deviations in {outside}; intervals hold {held} of {judged}{verdicts}"
     )
 
 
