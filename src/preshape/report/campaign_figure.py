@@ -9,16 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from preshape.report.campaign import CampaignPanel, CampaignSummary, Cloud, Curves
-from preshape.report.figures import ACCENT, INK, MUTED, SECOND, new_figure, tidy
+from preshape.report.figures import ACCENT, INK, SERIES, new_figure, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 __all__ = ["campaign_figure"]
-
-LINES = ((ACCENT, "-", 1.9), (SECOND, "--", 1.6), (INK, ":", 1.6), (MUTED, "-.", 1.6))
-"""Colour, line and width, one after the other: told apart in grey print by the line."""
 
 WIDTH, HEIGHT = 5.0, 3.9
 """Of a panel [in]."""
@@ -61,10 +58,13 @@ def _draw(figure: Figure, axes: Axes, panel: CampaignPanel) -> None:
     tidy(axes, panel.x_label, panel.y_label, panel.title)
     if isinstance(panel, Curves):
         for number, (name, x, y) in enumerate(panel.curves):
-            colour, line, width = LINES[number % len(LINES)]
+            colour, line, width = SERIES[number % len(SERIES)]
             axes.plot(x, y, color=colour, linestyle=line, linewidth=width, label=name)
         if panel.logarithmic:
             axes.set_xscale("log")
+        if not _varies(np.concatenate([y for _, _, y in panel.curves])):  # an axis of its rounding would say that it does
+            middle = float(np.nanmean(panel.curves[0][2]))
+            axes.set_ylim(min(0.0, 2.0 * middle), max(0.0, 2.0 * middle) or 1.0)
         if len(panel.curves) > 1:
             axes.legend(fontsize=8.5, loc="best", frameon=True, framealpha=0.9, edgecolor="white")
     elif isinstance(panel, Cloud):
