@@ -12,6 +12,7 @@ from nicegui import background_tasks
 from preshape.mode import Mode
 from preshape.studio.page.measurements import Measurements
 from preshape.studio.page.session import Session
+from preshape.studio.page.shared import Shared
 from preshape.studio.workers import Overdue
 from preshape.workflow.workbench import AskedDesign, Workbench, from_text, view_of
 
@@ -48,7 +49,7 @@ def played(play: Play, bench: Workbench = BENCH) -> tuple[Session, Computer, lis
 
     async def playing() -> tuple[Session, Computer, list[dict[str, Any]]]:
         computer = Computer()
-        session = Session(bench, computer, Measurements(computer, 1000))
+        session = Session(bench, Shared(computer, Measurements(computer, 1000)))
         told: list[dict[str, Any]] = [session.first(view_of(bench))]
         session.say = told.append
         await play(session, computer, told)

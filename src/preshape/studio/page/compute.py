@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable
 from typing import ParamSpec, Protocol, TypeVar
 
@@ -14,7 +13,6 @@ __all__ = [
     "TRADE_OFF_TIME",
     "VIEW_TIME",
     "Compute",
-    "slow_lane",
 ]
 
 P = ParamSpec("P")
@@ -37,13 +35,3 @@ class Compute(Protocol):
     async def run(self, seconds: float, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """What the function returns; InputError as it does, or if it takes longer."""
         ...
-
-
-_queue: list[asyncio.Semaphore] = []
-
-
-def slow_lane() -> asyncio.Semaphore:
-    """Exports and trade-offs wait for one another, so that pictures always find someone free."""
-    if not _queue:
-        _queue.append(asyncio.Semaphore(1))
-    return _queue[0]
