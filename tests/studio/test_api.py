@@ -251,7 +251,13 @@ def test_the_api_does_what_its_description_says(label: str, mode: GenerationMode
     )
     @given(case=operation.as_strategy(generation_mode=mode))
     def run(case: Any) -> None:
+        answer = case.call(timeout=120.0)
+        if answer.status_code == 503:  # what a test makes up may take minutes: it is stopped, and the answer says so
+            assert list(answer.json()) == ["detail"] and answer.json()["detail"].startswith(
+                ("this took", "the computer")
+            )
+            return
         # A request of the right form may ask for what does not exist: then it is answered by 422 and a sentence.
-        case.call_and_validate(excluded_checks=[positive_data_acceptance], timeout=60.0)
+        case.validate_response(answer, excluded_checks=[positive_data_acceptance])
 
     run()
