@@ -29,15 +29,15 @@ class Computer:
         self.asked: list[str] = []
         self.gate = asyncio.Event()
         self.gate.set()
-        self.overdue = False
+        self.failure: Exception | None = None
 
     async def run(self, seconds: float, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """What the function returns."""
         assert seconds > 0.0
         self.asked.append(function.__name__)
         await self.gate.wait()
-        if self.overdue:
-            raise Overdue("this took longer than it may.")
+        if self.failure is not None:
+            raise self.failure
         return function(*args, **kwargs)
 
 
@@ -94,14 +94,21 @@ def test_what_cannot_be_changes_nothing_and_is_told_at_its_field() -> None:
     assert "charts" not in told[-1]
 
 
-def test_a_picture_that_takes_too_long_is_told_and_the_state_is_kept() -> None:
+@pytest.mark.parametrize(
+    ("failure", "said"),
+    [
+        (Overdue("this took longer than it may."), "This took longer than it may."),
+        (RuntimeError("Traceback: zero-size array"), "This failed within preshape"),
+    ],
+)
+def test_a_picture_that_does_not_come_is_told_and_the_state_is_kept(failure: Exception, said: str) -> None:
     async def play(session: Session, computer: Computer, _: list[dict[str, Any]]) -> None:
-        computer.overdue = True
+        computer.failure = failure
         await session.edit("mode.0.frequency", "12")
         await asyncio.sleep(0.1)
 
     session, _, told = played(play)
-    assert told[-1]["status"] == "This took longer than it may."
+    assert told[-1]["status"].startswith(said)
     assert from_text(told[-1]["link"]).modes[0].frequency == 12.0
     assert session.view is not None
     assert session.view.workbench == BENCH

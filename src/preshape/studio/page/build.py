@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from preshape.errors import InputError
 from preshape.studio.page import frame
-from preshape.studio.page.compute import VIEW_TIME
+from preshape.studio.page.compute import FAILURES, VIEW_TIME, told
 from preshape.studio.page.deeds import DEEDS
 from preshape.studio.page.fields import sentence
 from preshape.studio.page.measurements import Measurements
@@ -145,8 +145,8 @@ async def _heard(session: Session, deed: Callable[..., Awaitable[None]], event: 
     values = event.args if isinstance(event.args, list) else []
     try:
         await deed(session, *(str(value) for value in values))
-    except (InputError, Overdue) as error:
-        session.say({"say": sentence(str(error))})
+    except FAILURES as error:
+        session.say({"say": told(error)})
 
 
 async def _show_dropped(session: Session, name: str, content: bytes) -> None:

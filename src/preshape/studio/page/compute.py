@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from typing import ParamSpec, Protocol, TypeVar
+
+from preshape.errors import InputError
+from preshape.studio.page.fields import sentence
+from preshape.studio.workers import Overdue
 
 __all__ = [
     "EXPORT_TIME",
@@ -12,7 +17,9 @@ __all__ = [
     "TRADE_OFF_PATIENCE",
     "TRADE_OFF_TIME",
     "VIEW_TIME",
+    "FAILURES",
     "Compute",
+    "told",
 ]
 
 P = ParamSpec("P")
@@ -27,6 +34,18 @@ TRADE_OFF_TIME, TRADE_OFF_PATIENCE = 40.0, 4.0
 FILE_TIME = 60.0
 EXPORT_TIME = 20.0
 REPORT_TIME = 120.0
+
+
+FAILURES = (InputError, Overdue, RuntimeError)
+"""What may come instead of a result: a refusal, a job that took too long, or a fault of ours."""
+
+
+def told(failure: Exception) -> str:
+    """What the user is told; a fault goes to the log, with its trace."""
+    if isinstance(failure, (InputError, Overdue)):
+        return sentence(str(failure))
+    logging.getLogger(__name__).error("a job of the studio failed: %s", failure)
+    return "This failed within preshape; the state is kept, and the terminal shows what to report."
 
 
 class Compute(Protocol):

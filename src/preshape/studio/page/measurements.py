@@ -64,6 +64,8 @@ class Measurements:
                 key = await self.read(b"".join(parts), name[:200])
             except (InputError, Overdue) as error:
                 return JSONResponse({"trouble": str(error)})
+            except RuntimeError as failure:
+                return JSONResponse({"trouble": told(failure)})
             return JSONResponse({"key": key})
 
         # Annotations are text here, and the framework looks them up among the module's names.

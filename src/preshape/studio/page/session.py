@@ -8,18 +8,22 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from preshape.errors import InputError
 from preshape.studio.page import panels
 from preshape.studio.page.axis import axis_end
-from preshape.studio.page.compute import EXPORT_TIME, TRADE_OFF_PATIENCE, TRADE_OFF_TIME, VIEW_TIME
+from preshape.studio.page.compute import (
+    EXPORT_TIME,
+    FAILURES,
+    TRADE_OFF_PATIENCE,
+    TRADE_OFF_TIME,
+    VIEW_TIME,
+    told,
+)
 from preshape.studio.page.edits import edited, fields_of
 from preshape.studio.page.export_panel import ExportChoice, export_preview
-from preshape.studio.page.fields import sentence
 from preshape.studio.page.history import History
 from preshape.studio.page.plots import TRADE_OFF, Picture
 from preshape.studio.page.shared import Shared
 from preshape.studio.page.wire import Sent
-from preshape.studio.workers import Overdue
 from preshape.workflow.workbench import (
     Measured,
     View,
@@ -116,8 +120,8 @@ class Session:
                 if self._last_edit != (field, now):
                     return None
                 new = edited(self.workbench, field, text)
-        except (InputError, Overdue) as error:
-            self.errors[field] = sentence(str(error))
+        except FAILURES as error:
+            self.errors[field] = told(error)
             return self.say({"errors": {**self.errors, **panels.troubles(self.view)}})
         self.errors.pop(field, None)
         same = now - self._changed_at < TOGETHER or how == "held"
@@ -195,8 +199,8 @@ class Session:
                 wanted, since = self.workbench, self._changed_at
                 try:
                     self.view = await self.shared.compute.run(VIEW_TIME, view_of, wanted)
-                except (InputError, Overdue) as error:
-                    self.say({"status": sentence(str(error)), "link": to_text(wanted)})
+                except FAILURES as error:
+                    self.say({"status": told(error), "link": to_text(wanted)})
                     if self._changed_at == since:
                         return
                     continue
@@ -223,8 +227,8 @@ class Session:
                 return
             try:
                 html = await self.shared.compute.run(EXPORT_TIME, panels.preview, *wanted)
-            except Overdue as error:
-                html = export_preview(None, str(error))
+            except FAILURES as error:
+                html = export_preview(None, told(error))
         if wanted == (self.workbench, self.export):
             self.say({"html": {"preview": html}})
 
@@ -241,8 +245,8 @@ class Session:
                 found = await self.shared.compute.run(
                     TRADE_OFF_TIME, trade_off_of, self.workbench, patience=TRADE_OFF_PATIENCE
                 )
-            except (InputError, Overdue) as error:
-                return self.say({"charts": {TRADE_OFF.name: {"note": sentence(str(error))}}})
+            except FAILURES as error:
+                return self.say({"charts": {TRADE_OFF.name: {"note": told(error)}}})
         if self._changed_at == since:
             self.trade_off = found
             self.say({"charts": self._sent.trade_off(self._picture())})
