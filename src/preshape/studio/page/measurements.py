@@ -57,8 +57,8 @@ class Measurements:
             async for part in request.stream():
                 size += len(part)
                 if size > self.largest:
-                    told = f"The file has more than {self.largest / 1e6:g} MB: cut the part that holds the vibration."
-                    return JSONResponse({"trouble": told}, status_code=413)
+                    limit = f"The file has more than {self.largest / 1e6:g} MB: cut the part that holds the vibration."
+                    return JSONResponse({"trouble": limit}, status_code=413)
                 parts.append(part)
             try:
                 key = await self.read(b"".join(parts), name[:200])
