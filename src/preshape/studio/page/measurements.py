@@ -7,7 +7,7 @@ from collections import OrderedDict
 from typing import TYPE_CHECKING
 
 from preshape.errors import InputError
-from preshape.studio.page.compute import FILE_TIME, Compute
+from preshape.studio.page.compute import FILE_TIME, Compute, told
 from preshape.studio.workers import Overdue
 from preshape.workflow.workbench import Measured, measured
 
