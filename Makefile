@@ -39,6 +39,7 @@ docs: $(DEV)
 figures: $(DEV)
 	$(BIN)/python docs/figures/make_figures.py
 	$(BIN)/python docs/figures/make_animation.py
+	$(BIN)/python docs/figures/make_numbers.py
 	$(BIN)/python docs/figures/make_screenshots.py
 
 bench: $(DEV)

@@ -17,6 +17,8 @@ from click.testing import CliRunner
 from tests.workflow.recordings import klipper_text, recording
 
 import preshape
+import preshape.export
+import preshape.workflow
 from preshape.cli.main import preshape as command_line
 from preshape.report import DesignJob, as_html
 from preshape.workflow import asked_design_report, designed
@@ -28,15 +30,22 @@ MODULES = sorted(
 )
 
 
+CELL_SETTINGS = re.compile(r"\A(?:---\n.*?^---\n|(?::[\w-]+:.*\n)+)", flags=re.MULTILINE | re.DOTALL)
+"""What says how a cell is shown: not part of its code."""
+
+
 def blocks(page: Path, language: str) -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+    """The blocks of a language, in order; the cells of a page that is a notebook are Python too."""
+    fence = rf"(?:{language}|\{{code-cell\}} python)" if language == "python" else language
+    found = re.findall(rf"^```{fence}\n(.*?)^```$", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+    return [CELL_SETTINGS.sub("", block) for block in found]
 
 
 @pytest.mark.parametrize(
     "page", [page for page in PAGES if blocks(page, "python")], ids=lambda page: str(page.relative_to(ROOT))
 )
 def test_python_blocks_run_one_after_the_other(page: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(ROOT)
+    monkeypatch.chdir(page.parent if "{code-cell}" in page.read_text() else ROOT)  # a notebook runs where it lies
     names: dict[str, object] = {}
     for block in blocks(page, "python"):
         exec(compile(block, str(page), "exec"), names)
@@ -62,13 +71,18 @@ def test_console_lines_are_accepted(line: str, tmp_path: Path, monkeypatch: pyte
                 "part.gcode",
                 "printer.cfg",
                 "config.g",
+                "crane-map.toml",
+                "gantry-robustness.toml",
                 "ring_down.csv",
             )
         ),
     ):
         (tmp_path / name).write_bytes((ROOT / "examples" / "data" / file).read_bytes())
+    (tmp_path / "examples").symlink_to(ROOT / "examples")  # lines to be typed in the project's folder
     for name, frequency in (("shaper.json", 8.7), ("x.json", 38.0), ("y.json", 61.0)):
         preshape.design.zvd((frequency, 0.024)).save(tmp_path / name)
+    exported = preshape.export.render(preshape.design.zvd((8.7, 0.024)), "c", dt=0.001, name="gantry_x")
+    preshape.workflow.save_export(exported, tmp_path / "firmware")
     job = DesignJob(family="zvd", modes=((47.3, 0.05),))
     (tmp_path / "report.html").write_text(as_html(asked_design_report(job, designed(job))))
     for name, shaper in (("before.csv", None), ("after.csv", preshape.design.zvd((46.0, 0.06)))):

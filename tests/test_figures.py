@@ -23,11 +23,19 @@ def figures() -> ModuleType:
     return module
 
 
-@pytest.mark.parametrize("name", ["certificate", "growth", "insensitivity"])
-def test_every_figure_draws_and_stands_in_the_documentation(figures: ModuleType, name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "page"),
+    [
+        ("certificate", "theory/shortest"),
+        ("growth", "theory/shortest"),
+        ("insensitivity", "theory/shortest"),
+        ("which-shaper", "how-to/which-shaper"),
+    ],
+)
+def test_every_figure_draws_and_stands_in_the_documentation(figures: ModuleType, name: str, page: str) -> None:
     assert as_svg(figures.FIGURES[name]()).startswith("<svg")
     assert (ROOT / "docs" / "images" / f"{name}.svg").is_file()
-    assert f"../images/{name}.svg" in (ROOT / "docs" / "theory" / "shortest.md").read_text()
+    assert f"../images/{name}.svg" in (ROOT / "docs" / f"{page}.md").read_text()
 
 
 def test_the_growth_is_that_of_proved_designs_unless_it_says_otherwise() -> None:

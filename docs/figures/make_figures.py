@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.patches import Rectangle
 
 from preshape import Modes, design, identify
+from preshape.campaign import run_campaign
 from preshape.command.path import shaped_path
 from preshape.command.rest_to_rest import deflection_limiting
 from preshape.engine.basis import Basis
@@ -20,7 +23,14 @@ from preshape.identify import TimeSeries, operational_modes
 from preshape.papers.hyde.chapter6_figures import swept_figure
 from preshape.papers.hyde.chapter6_sweep import sweep
 from preshape.plant import FloatingOscillator, load_plant
-from preshape.report import comparison_figure, contour_figure, move_figure, simulation_figure, stabilisation_figure
+from preshape.report import (
+    campaign_figure,
+    comparison_figure,
+    contour_figure,
+    move_figure,
+    simulation_figure,
+    stabilisation_figure,
+)
 from preshape.report.figures import ACCENT, INK, MUTED, SECOND, SOFT, as_svg, new_figure, tidy
 from preshape.vibration import residual_vibration, tolerated_bands
 from preshape.workflow import compare, simulate_plant
@@ -197,6 +207,13 @@ def own_machine() -> Figure:
     return simulation_figure(simulate_plant(gantry, np.minimum(np.arange(250) * 1e-3, 0.2), 1e-3, shaper))
 
 
+def campaign() -> Figure:
+    """The robustness campaign of the examples."""
+    with TemporaryDirectory() as folder:
+        file = HERE.parents[1] / "examples" / "data" / "gantry-robustness.toml"
+        return campaign_figure(run_campaign(file, folder, workers=0).summary)
+
+
 def contours() -> Figure:
     """The part of the examples, shaped in three ways."""
     part = identify.read(HERE.parents[1] / "examples" / "data" / "part.csv")
@@ -231,8 +248,49 @@ def stabilisation() -> Figure:
     return stabilisation_figure(operational_modes(TimeSeries(rate, 0.0, motion, ("bus", "arm"))))
 
 
+QUESTIONS = (
+    (
+        "Is the move known beforehand,\nand the actuator's force yours?",
+        "time_optimal, deflection_limiting",
+        "commands, not shapers",
+    ),
+    ("Must it not bend too far\non the way?", "sd_zv, deflection_limited", "a part of the swing, or metres"),
+    ("Do the modes move\nwhile it works?", "Stream.track, Schedule", "around a family from below"),
+    ("Do you know bands rather\nthan frequencies?", "specified_insensitivity", "shortest for the bands, proved"),
+    ("Are there several modes?", "direct", "shortest for all of them, proved"),
+    ("Is the frequency right\nto 3 %?", "zv", "half a period"),
+    ("Is it right to 14 %,\nor to 20 %?", "zvd, ei", "one period"),
+    ("Is it worse than that?", "two_hump_ei, three_hump_ei", "1½ and 2 periods: ±36 %, ±48 %"),
+)
+"""Question, what to call, and what that is; the first yes decides."""
+
+
+def which_shaper() -> Figure:
+    """The questions one under the other, the answers beside them; told apart by frame and place, not by colour."""
+    figure = new_figure(7.4, 7.6)
+    axes = figure.subplots()
+    axes.set_axis_off()
+    axes.set_xlim(0.0, 10.0)
+    axes.set_ylim(-len(QUESTIONS) + 0.45, 0.55)
+    arrow = {"arrowstyle": "-|>", "color": INK, "linewidth": 1.1, "shrinkA": 0.0, "shrinkB": 0.0}
+    for row, (question, calls, what) in enumerate(QUESTIONS):
+        y = -float(row)
+        axes.add_patch(Rectangle((0.1, y - 0.33), 3.9, 0.66, facecolor="white", edgecolor=INK, linewidth=1.0))
+        axes.text(2.05, y, question, ha="center", va="center", fontsize=10.0, color=INK)
+        axes.add_patch(Rectangle((5.2, y - 0.33), 4.7, 0.66, facecolor="#eef3f8", edgecolor=ACCENT, linewidth=1.6))
+        axes.text(7.55, y + 0.12, calls, ha="center", va="center", fontsize=10.5, color=ACCENT, fontweight="bold")
+        axes.text(7.55, y - 0.15, what, ha="center", va="center", fontsize=9.5, color=INK)
+        axes.annotate("", (5.2, y), (4.0, y), arrowprops=arrow)
+        axes.text(4.6, y + 0.07, "yes", ha="center", va="bottom", fontsize=9.5, color=INK)
+        if row + 1 < len(QUESTIONS):
+            axes.annotate("", (2.05, y - 0.67), (2.05, y - 0.33), arrowprops=arrow)
+            axes.text(2.17, y - 0.5, "no", ha="left", va="center", fontsize=9.5, color=INK)
+    return figure
+
+
 FIGURES = {
     "adaptive": adaptive,
+    "campaign": campaign,
     "certificate": certificate,
     "comparison": comparison,
     "contours": contours,
@@ -241,6 +299,7 @@ FIGURES = {
     "own-machine": own_machine,
     "swinging": swinging,
     "stabilisation": stabilisation,
+    "which-shaper": which_shaper,
 }
 
 

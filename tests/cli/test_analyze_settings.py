@@ -49,7 +49,7 @@ def test_other_modes_and_a_measurement() -> None:
     ("line", "sentence"),
     [
         ("printer.cfg --as klipper", "the shapers of x and y differ: say which axis, such as x"),
-        ("printer.cfg --as c", "'c' takes no settings"),
+        ("printer.cfg --as c", "0 of 1 files are named *.h"),
         ("given.json --axis x", "belong to settings: say whose they are with --as"),
         ("given.json --target-version 3.5", "belong to settings"),
         ("config.g", "is not JSON"),

@@ -130,3 +130,18 @@ def test_a_changed_file_is_kept_and_force_replaces_it() -> None:
     assert Path("fw/shaper.c").read_text() == "mine"
     said("c shaper.json --rate 1000 --out fw --force")
     assert Path("fw/shaper.c").read_text() != "mine"
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_the_list_fits_the_terminal_and_names_every_version(width: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two columns that do not touch: names on the left, everything else to the right of the longest."""
+    monkeypatch.setattr("preshape.cli.screens.FULL_WIDTH", width)
+    lines = [line.rstrip() for line in said("--list").split("\n\n")[0].splitlines()]
+    indent = max(map(len, TARGETS)) + 2
+    assert max(map(len, lines)) <= width
+    assert [line[:indent].strip() for line in lines if not line.startswith(" ")] == list(TARGETS)
+    assert all(line[indent - 2 : indent] == "  " and line[indent] != " " for line in lines)
+    whole = " ".join(line[indent:] if line.startswith(" ") else line for line in lines)
+    for target in TARGETS.values():
+        for version in target.versions:
+            assert str(target.limits_of(version)) in whole and version in whole

@@ -12,7 +12,6 @@ from scipy.signal import lfilter
 
 from preshape import Shaper, design
 from preshape.export import render
-from preshape.export.twincat import _parse as twincat_parse
 
 SHAPER = design.zvd([(41.0, 0.05), (66.0, 0.04)])
 DT = 0.0013
@@ -37,7 +36,7 @@ def test_twincats_arrays_are_a_fir_filter() -> None:
     assert len(a) == len(b) == exported.placed.latency_samples + 1
     np.testing.assert_allclose(lfilter(b, a, command), shaped, atol=1e-14)
     assert f"n_shaper_order : UINT := {len(b) - 1};" in text
-    assert twincat_parse({"x.txt": text.encode()}) == exported.placed.shaper
+    assert exported.target.execute({"x.txt": text.encode()}) == exported.placed.shaper
 
 
 def test_acs_gets_milliseconds_on_its_cycle_and_amplitudes_made_for_them() -> None:

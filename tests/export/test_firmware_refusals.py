@@ -22,6 +22,18 @@ from preshape.errors import InputError
         ("klipper", None, "shaper_type_x: 3hump_ei\nshaper_freq_x: 50\ndamping_ratio_x: 0.25", "above 0.2"),
         ("klipper", None, "[printer]\nkinematics: corexy", "no section \\[input_shaper\\]"),
         ("klipper", None, "[[[", "no Klipper configuration|no section"),
+        (
+            "kalico",
+            None,
+            "shaper_type_x: smooth_mzv\nsmoother_freq_x: 50",
+            "axis x has a smoother, smooth_mzv",
+        ),
+        (
+            "kalico",
+            None,
+            "shaper_type: smoother\nsmooth_time_x: 0.02\ncoeffs_x: 1,2",
+            "has a smoother, smoother: only",
+        ),
         ("kalico", None, "shaper_type_x: custom\nshaper_a_x: 0.5,0.5\nshaper_t_x: 0", "give as many, up to 5"),
         ("kalico", None, "shaper_type_x: custom\nshaper_a_x: 1\nshaper_t_x:", "1 amplitudes and 0 times"),
         ("kalico", None, "shaper_type_x: custom\nshaper_a_x: 0.5,0.5\nshaper_t_x: 0,0.3", "0.001 to 0.2 s"),

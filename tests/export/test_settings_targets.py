@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from tests.export.exports import assert_executed_as_asked, damaged
 from tests.laws import FAMILIES
 
 from preshape import Modes, Shaper, design
@@ -24,17 +25,9 @@ from preshape.vibration import residual_vibration
 WORDED = {name: target for name, target in TARGETS.items() if isinstance(target, SettingsTarget)}
 EVERY = [(target.name, version) for target in WORDED.values() for version in target.versions]
 
-RESOLUTION = {
-    "klipper-plugin": (1e-12, 1e-11),
-    "kalico": (6e-10, 3e-9),
-    "rrf": (0.75e-6, 4e-6),
-    "zaber": (0.0, 0.0),
-    "csv": (0.0, 0.0),
-    "json": (0.0, 0.0),
-}
-"""For targets that hold impulses: seconds, and amplitude."""
+IMPULSES = [(name, version) for name, version in EVERY if WORDED[name].limits_of(version).taps is not None]
+"""Those that hold impulses."""
 
-IMPULSES = [(name, version) for name, version in EVERY if name in RESOLUTION and version != "main"]
 FIRMWARE = {
     ("klipper", "2026-03"): VERSIONS["2026-03"],
     ("klipper", "2025-09"): VERSIONS["2025-09"],
@@ -45,11 +38,11 @@ FIRMWARE = {
     ("marlin", "2.1"): CLASSIC,
     ("marlin-ft", "2.1"): FIXED_TIME,
 }
-"""For the others: what they can do."""
+"""What the others can do."""
 
 
 def test_every_target_is_one_or_the_other() -> None:
-    assert {*IMPULSES, *FIRMWARE} == set(EVERY)
+    assert sorted([*IMPULSES, *FIRMWARE]) == sorted(EVERY)
 
 
 @pytest.mark.parametrize(("target", "version"), IMPULSES)
@@ -80,15 +73,11 @@ def test_impulses_are_executed_within_the_targets_resolution(
             render(shaper, target, version=version)
         return
     exported = render(shaper, target, version=version)
-    seconds, amplitude = RESOLUTION[target]
-    for does in (exported.placed.shaper, WORDED[target].parse(exported.files)):
-        np.testing.assert_allclose(does.times, shaper.times, rtol=0, atol=seconds * len(shaper))
-        np.testing.assert_allclose(does.amplitudes, shaper.amplitudes, rtol=0, atol=amplitude)
-    assert shaper.design.modes is not None
-    for mode, (left, asked) in zip(shaper.design.modes, exported.placed.residuals, strict=True):
+    assert WORDED[target].execute(exported.files) == exported.placed.shaper
+    assert_executed_as_asked(exported.placed.shaper, shaper, limits)
+    for mode, (left, _) in zip(shaper.design.modes or (), exported.placed.residuals, strict=True):
         again = float(residual_vibration(exported.placed.shaper, mode.frequency, mode.damping))
         assert left == pytest.approx(again, abs=1e-14)
-        assert abs(left - asked) <= len(shaper) * shaper.magnitude * (amplitude + 2e3 * np.pi * seconds)
 
 
 @pytest.mark.parametrize(("target", "version"), FIRMWARE)
@@ -118,10 +107,10 @@ def test_what_is_written_is_what_is_executed(target: str, version: str) -> None:
     exported = render(design.zvd((41.3, 0.06)), target, version=version, name="gantry_x")
     chosen, does = WORDED[target], exported.placed.shaper
     assert f"gantry_x{chosen.ending}" in exported.files
-    assert chosen.parse(exported.files) == does
+    assert chosen.execute(exported.files) == does
     assert does.design.modes == Modes((41.3, 0.06)) and does.design.residual == exported.placed.residuals[0][0]
     for axis in exported.placed.axes:
-        assert chosen.parse(exported.files, axis) == does
+        assert chosen.execute(exported.files, axis=axis) == does
         assert render(design.zvd((41.3, 0.06)), target, version=version, axis=axis).placed.shaper == does
     assert exported.placed.axes == (chosen.axes[:2] if chosen.axes else ())
 
@@ -217,7 +206,7 @@ def test_a_familys_name_stays_in_its_comment(target: str, version: str) -> None:
     shaper = design.zvd((41.3, 0.06))
     shaper = shaper.with_design(replace(shaper.design, family=evil))
     exported = render(shaper, target, version=version)
-    assert WORDED[target].parse(exported.files) == exported.placed.shaper
+    assert WORDED[target].execute(exported.files) == exported.placed.shaper
     comment = WORDED[target].comment
     head = str(next(iter(exported.files.values()))).splitlines()[:3]
     assert not comment or all(line.startswith(comment) for line in head)
@@ -238,22 +227,10 @@ FINISHED = {pair: render(design.zvd((41.3, 0.06)), pair[0], version=pair[1]) for
 def test_damaged_settings_are_a_shaper_or_a_clear_refusal(pair: tuple[str, str], data: st.DataObject) -> None:
     exported: ExportedSettings = FINISHED[pair]
     name = next(iter(exported.files))
-    raw = bytearray(str(exported.files[name]).encode())
-    for _ in range(data.draw(st.integers(1, 5))):
-        at = data.draw(st.integers(0, len(raw)))
-        kind = data.draw(st.sampled_from(["byte", "cut", "insert", "double"]))
-        if kind == "byte" and at < len(raw):
-            raw[at] = data.draw(st.integers(0, 255))
-        elif kind == "cut":
-            del raw[at : at + data.draw(st.integers(1, 60))]
-        elif kind == "insert":
-            raw[at:at] = data.draw(
-                st.sampled_from([b"nan", b"-", b":", b"1e999", b"[", b'"', b"\xff", b"9" * 99, b"\n"])
-            )
-        else:
-            raw += raw[at:]
+    inserts = [b"nan", b"-", b":", b"1e999", b"[", b'"', b"\xff", b"9" * 99, b"\n"]
+    raw = damaged(data, exported.files[name], inserts, 60)
     try:
-        exported.target.parse({name: bytes(raw)})
+        exported.target.execute({name: raw})
     except InputError as error:
         assert len(str(error)) > 10
 
@@ -262,7 +239,7 @@ def test_damaged_settings_are_a_shaper_or_a_clear_refusal(pair: tuple[str, str],
 @given(text=st.text() | st.binary())
 def test_garbage_is_refused(target: str, text: str | bytes) -> None:
     with pytest.raises(InputError):
-        WORDED[target].parse({f"x{WORDED[target].ending}": text})
+        WORDED[target].execute({f"x{WORDED[target].ending}": text})
 
 
 def test_no_record_is_needed_of_how_a_shaper_came_about() -> None:

@@ -146,3 +146,27 @@ def test_any_damage_is_read_or_refused_in_a_sentence(cut: int, flip: bytes, tmp_
             load_plant(write(tmp_path, content))
         except InputError as problem:
             assert "plant.json" in str(problem)
+
+
+def test_a_payload_is_mass_on_a_coordinate() -> None:
+    from preshape.plant.plant_file import plant_of, read_plant_data
+
+    data = read_plant_data(Path(__file__).parents[2] / "examples" / "data" / "machine.toml")
+    heavier = {**data, "matrices": {**data["matrices"]}}
+    heavier["matrices"]["mass"] = [[8.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 1.2 + 0.4]]
+    assert plant_of(data, {2: 0.4}).modes() == plant_of(heavier).modes()
+    assert plant_of(data, {2: 0.0}).modes() == plant_of(data).modes(), "and what was read stays as it was"
+    with pytest.raises(InputError, match="payload's coordinate is 3: give a whole number from 0 to 2"):
+        plant_of(data, {3: 0.4})
+    with pytest.raises(InputError, match="the payload is -1 kg: give 0 kg or more"):
+        plant_of(data, {2: -1.0})
+    modal = {
+        "schema": data["schema"],
+        "modal": {
+            "modes": [{"frequency": 1.0}],
+            "input": {"name": "force"},
+            "outputs": [{"name": "tip", "weights": [1.0]}],
+        },
+    }
+    with pytest.raises(InputError, match="has no matrices, so no mass can be put on a coordinate"):
+        plant_of(modal, {0: 1.0})

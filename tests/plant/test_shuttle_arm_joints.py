@@ -80,6 +80,17 @@ def test_a_constant_torque_is_followed_exactly_from_the_first_step():
     assert done.outputs["shoulder yaw motor"] - POSE[0] == pytest.approx(expected, abs=1e-9)
 
 
+def test_a_torque_that_begins_later_moves_as_much_later():
+    """The same motor: T (t - t0)^2 / 2 J from t0 on, then straight on at T (t1 - t0) / J, however the step lies."""
+    loose = replace(LINEAR, stiffness=1e-9, viscous=0.0)
+    command = torque(0, 20.0, 101)
+    command[0, :30] = command[0, 61:] = 0.0
+    done = ShuttleArm(POSE, None, loose, servo=None).simulate(command, 0.02)
+    pushed = np.clip(done.times - 0.6, 0.0, 0.62)
+    expected = 20.0 / loose.inertia[0] * (0.5 * pushed**2 + pushed * np.clip(done.times - 1.22, 0.0, None))
+    assert done.outputs["shoulder yaw motor"] - POSE[0] == pytest.approx(expected, abs=1e-9)
+
+
 def test_within_the_gap_nothing_couples():
     joints = replace(CALIBRATED_JOINTS.only("freeplay"), gap=0.01)
     arm = ShuttleArm(POSE, None, joints, servo=None)

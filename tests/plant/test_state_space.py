@@ -198,3 +198,23 @@ def test_names_that_do_not_fit_are_refused() -> None:
         LinearPlant([[-1.0]], [1.0], [1.0]).modes()
     with pytest.raises(InputError, match="hold is 'cubic'"):
         plant.simulate([1.0], 0.1, hold="cubic")
+
+
+def test_other_modes_leave_shapes_and_rigid_bodies_where_they_are() -> None:
+    """A body on two dampers and springs that floats: its poles go where they are told, its vectors and zeros stay."""
+    stiff = 30.0 * np.array([[1.0, -1.0, 0.0], [-1.0, 3.0, -2.0], [0.0, -2.0, 2.0]])
+    damp = np.array([[0.2, -0.2, 0.0], [-0.2, 0.2, 0.0], [0.0, 0.0, 0.0]])
+    a = np.block([[np.zeros((3, 3)), np.eye(3)], [-stiff, -damp]])
+    plant = LinearPlant(a, [0.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+    wanted = [(1.1 * plant.modes()[0].frequency, 0.03), (0.9 * plant.modes()[1].frequency, 0.002)]
+    moved = plant.with_modes(wanted)
+    for mode, (frequency, damping) in zip(moved.modes(), wanted, strict=True):
+        assert mode.frequency == pytest.approx(frequency, rel=1e-9)
+        assert mode.damping == pytest.approx(damping, rel=1e-6)
+    assert moved.poles.size == plant.poles.size == 4, "the rigid body's two stay at 0"
+    assert moved.participation() == pytest.approx(plant.participation(), rel=1e-6), "residues stay"
+    late = np.ones(2000)
+    drift = [p.simulate(late, 0.01).outputs["output"][-1] for p in (plant, moved)]
+    assert drift[1] == pytest.approx(drift[0], rel=0.01), "and the whole is as heavy as it was"
+    with pytest.raises(InputError, match="1 mode.* are given: give 2"):
+        plant.with_modes((1.0, 0.0))

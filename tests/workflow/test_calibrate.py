@@ -160,7 +160,36 @@ def test_settings_of_an_earlier_run_do_not_stay_where_the_shaper_no_longer_fits(
     assert len(list(folder.iterdir())) > 1
     gone = replace(text, text="", note="too long", files={})
     save_calibration(replace(gantry, texts=(gone,)), tmp_path)
-    assert [path.name for path in folder.iterdir()] == ["notes.txt"]
+    assert {path.name for path in folder.iterdir() if path.suffix != ".outdated"} == {"notes.txt"}
+
+
+def test_picks_of_an_earlier_run_do_not_stay_where_this_run_has_none(gantry: Calibration, tmp_path: Path) -> None:
+    save_calibration(gantry, tmp_path)
+    trade = gantry.trade_off
+    assert trade is not None
+    save_calibration(replace(gantry, trade_off=replace(trade, quality=None)), tmp_path)
+    assert {path.name for path in tmp_path.glob("*.json")} == {"improved.json", "performance.json", "shaper.json"}
+    save_calibration(replace(gantry, trade_off=None, texts=()), tmp_path)  # as of a crane
+    left = {path.name for path in tmp_path.iterdir() if path.suffix != ".outdated"}
+    assert left - {"report.pdf"} == {"calibration.svg", "report.html", "settings", "shaper.json"}
+    settings = [path.name for path in (tmp_path / "settings").glob("*/*") if path.suffix != ".outdated"]
+    assert settings == ["preshape_shaper.py"]  # the module for Klipper, which holds no impulses
+
+
+def test_nothing_of_the_user_s_is_lost_with_them(gantry: Calibration, tmp_path: Path) -> None:
+    """A pick and settings that were changed by hand are set aside, others are not touched."""
+    save_calibration(gantry, tmp_path)
+    assert gantry.trade_off is not None and gantry.trade_off.quality is not None
+    changed = (tmp_path / "quality.json").read_text() + "\n"
+    (tmp_path / "quality.json").write_text(changed)
+    rrf = next((tmp_path / "settings" / "rrf").iterdir())
+    mine = rrf.read_text() + "M593 ; mine\n"
+    rrf.write_text(mine)
+    (tmp_path / "settings" / "rrf" / "mine.g").write_text("M593 P0 ; mine")
+    save_calibration(replace(gantry, trade_off=None, texts=()), tmp_path)
+    assert (tmp_path / "quality.json.outdated").read_text() == changed
+    assert rrf.with_name(rrf.name + ".outdated").read_text() == mine
+    assert (tmp_path / "settings" / "rrf" / "mine.g").read_text() == "M593 P0 ; mine"
 
 
 def test_every_calibration_of_a_printer_ends_with_settings_for_the_axis() -> None:

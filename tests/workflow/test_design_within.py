@@ -67,6 +67,19 @@ def test_the_picks_keep_their_promises(name: str) -> None:
     assert all(len(pick.shaper) <= 5 for pick in trade.picks)
 
 
+@pytest.mark.parametrize("name", SIMULATED)
+def test_every_pick_beats_the_stock_choice_in_what_it_is_for(name: str) -> None:
+    """The stock choice is among the optimiser's starts: to return more than that start is what it is for."""
+    trade = design_within(SIMULATED[name])
+    stock = trade.stock.score
+    assert trade.performance is not None and trade.improved is not None and trade.quality is not None
+    assert trade.performance.score.maximum_acceleration > 1.2 * stock.maximum_acceleration
+    assert trade.improved.score.maximum_acceleration > 1.005 * stock.maximum_acceleration
+    if stock.remaining_vibration > 1e-4:
+        assert trade.quality.score.remaining_vibration < 0.9 * stock.remaining_vibration
+    assert all(pick.shaper.times.tolist() != trade.stock.shaper.times.tolist() for pick in trade.picks)
+
+
 def test_one_narrow_mode_gains_acceleration() -> None:
     trade = design_within(SIMULATED["one mode"], maximum_impulses=10)
     assert trade.acceleration_gain > 0.05

@@ -9,8 +9,8 @@ import pytest
 
 from preshape import design
 from preshape.errors import InputError
-from preshape.export import klipper
-from preshape.workflow import executed_shaper, left_of_spectrum
+from preshape.export import TARGETS, AnyTarget, Target, klipper, render
+from preshape.workflow import executed_shaper, left_of_spectrum, save_export
 
 GANTRY = Path(__file__).resolve().parents[2] / "examples" / "data" / "gantry_x.csv"
 
@@ -28,6 +28,17 @@ def test_settings_in_a_file(tmp_path: Path) -> None:
     assert executed_shaper(tmp_path / "printer.cfg", "klipper", version="old", axis="x") == klipper.mzv(41.0, 0.1)
 
 
+@pytest.mark.parametrize("target", TARGETS.values(), ids=list(TARGETS))
+def test_an_export_in_its_folder(target: AnyTarget, tmp_path: Path) -> None:
+    asked = design.zvd((41.0, 0.05))
+    grid = {"dt": 0.001} if isinstance(target, Target) else {}
+    exported = render(asked, target.name, **grid)  # type: ignore[arg-type]
+    saved = save_export(exported, tmp_path / "out")
+    assert executed_shaper(tmp_path / "out", target.name) == exported.placed.shaper
+    if len(saved.files) == 1:
+        assert executed_shaper(saved.files[0], target.name) == exported.placed.shaper
+
+
 def test_what_is_left_of_a_measurement() -> None:
     """A shaper for its modes leaves little, one for elsewhere much, by both measures."""
     fitting, elsewhere = design.direct([(47.0, 0.03), (79.0, 0.03)]), design.zv((150.0, 0.05))
@@ -41,16 +52,21 @@ def test_what_is_left_of_a_measurement() -> None:
     ("name", "target", "options", "sentence"),
     [
         ("none.g", "rrf", {}, "cannot read"),
-        ("x.g", "c", {}, "'c' takes no settings that could be looked at: it is one of klipper"),
-        ("x.g", "nothing", {}, "'nothing' takes no settings"),
-        ("x.g", "rrf", {"version": "3.3"}, "version '3.3' is not known for rrf: it is 3.6 or 3.5"),
+        ("x.g", "c", {}, "x.g: 0 of 1 files are named \\*.h: give those of one export"),
+        ("x.g", "c", {"axis": "x"}, "target c shapes one axis: leave the axis out"),
+        ("x.g", "nothing", {}, "target 'nothing' is not known: it is c, linuxcnc"),
+        ("x.g", "rrf", {"version": "3.3"}, "version '3.3' is not known for target rrf: it is 3.6 or 3.5"),
         ("x.g", "rrf", {}, "x.g: there is no line with M593"),
-        ("big.g", "rrf", {}, "larger than a megabyte"),
-        (".", "rrf", {}, "cannot read"),
+        ("big.g", "rrf", {}, "big.g is larger than 1 MB"),
+        (".", "rrf", {}, "2 of 2 files are named \\*.g: give those of one export"),
+        ("many", "rrf", {}, "more than 100 files or 50 MB"),
     ],
 )
 def test_what_cannot_be_read(name: str, target: str, options: dict[str, str], sentence: str, tmp_path: Path) -> None:
     (tmp_path / "x.g").write_text("G28\n")
     (tmp_path / "big.g").write_text(";" * 1_000_001)
+    (tmp_path / "many").mkdir()
+    for index in range(101):
+        (tmp_path / "many" / f"{index}.g").touch()
     with pytest.raises(InputError, match=sentence):
         executed_shaper(tmp_path / name, target, **options)

@@ -221,7 +221,6 @@ def test_a_move_from_nowhere_is_passed_on_and_its_end_is_known(tmp_path: Path) -
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("G1 X1 F600\nG2 X5 I2\n", "line 2 has G2"),
         ("G1 X1\n", "line 1 moves before any F"),
         ("X1 F100\n", "line 1 moves without G0 or G1"),
         ("G1 X1 F0\n", "line 1 has F0"),

@@ -173,3 +173,17 @@ def test_the_example_machine_is_brought_to_rest() -> None:
     gantry = load_plant("examples/data/machine.toml")
     result = simulate_plant(gantry, np.minimum(np.arange(250) * 1e-3, 0.2), 1e-3, design.mesh(gantry.modes(), dt=1e-3))
     assert result.remaining("tool") < 1e-9 and result.remaining("carriage") < 1e-9
+
+
+def test_a_command_that_the_arm_does_not_notice_is_said_and_has_no_share() -> None:
+    """Its joints look every 80 ms: a pulse of 20 ms is over before, and rounding over rounding is no share."""
+    from preshape.plant import ShuttleArm
+
+    pulse = np.zeros((6, 3))
+    pulse[0, 0] = 0.01
+    result = simulate_plant(ShuttleArm(), pulse, 0.02, design.zv((0.91, 0.029)), rest=3.0)
+    assert any(note.startswith("nothing moves") for note in result.notes)
+    assert all(np.isnan(result.remaining(name)) for name in result.motions)
+    longer = simulate_plant(ShuttleArm(), np.repeat(pulse[:, :1], 50, axis=1), 0.02, design.zv((0.91, 0.029)), rest=3.0)
+    assert not any(note.startswith("nothing moves") for note in longer.notes)
+    assert longer.remaining("shoulder yaw angle") < 1.0

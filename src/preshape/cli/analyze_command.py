@@ -18,11 +18,11 @@ __all__ = ["command"]
     "--as",
     "target",
     metavar="TARGET",
-    help="FILE holds settings of this firmware: klipper, kalico, rrf, marlin, marlin-ft, prusa.  [default: it is a "
-    "SHAPER.json]",
+    help="FILE holds settings of this firmware, such as klipper or rrf, or FILE or folder is an export to this target, "
+    "as export --list shows.  [default: it is a SHAPER.json]",
 )
 @click.option(
-    "--target-version", metavar="VERSION", help="Of the firmware, as export --list shows.  [default: its first]"
+    "--target-version", metavar="VERSION", help="Of the target, as export --list shows.  [default: its first]"
 )
 @click.option("--axis", type=click.Choice(["x", "y", "z"]), help="Where the axes have different settings.")
 @mode_option("Modes to look at, instead of those it was designed or set for.")

@@ -29,6 +29,7 @@ __all__ = ["command"]
 )
 @sample_rate_option()
 @click.option("--part", metavar="NAME", help="Which measurement, or how its name begins, in files that hold several.")
+@click.option("--input", "excitation", metavar="COLUMN", help="Which column holds the input, if the file has it.")
 @click.option("--axis", type=click.Choice(["x", "y", "z"]), help="That the settings are for.  [default: x and y alike]")
 @click.option("--mixed", is_flag=True, help="The files are of several axes or machines on purpose.")
 @click.option(
@@ -49,6 +50,7 @@ def command(
     damping: float | None,
     sample_rate: float | None,
     part: str | None,
+    excitation: str | None,
     axis: str | None,
     mixed: bool,
     out: Path | None,
@@ -73,6 +75,7 @@ def command(
             damping=damping,
             sample_rate=sample_rate,
             part=part,
+            excitation=excitation,
             mixed=mixed,
             axis=axis,
         )
@@ -86,3 +89,5 @@ def command(
     settings_screen(calibration, saved)
     sheets = "" if saved.pdf is None else f"\nPDF: {saved.pdf}"
     click.echo(f"Report: {saved.report}{sheets}\nFigure: {saved.figure}\nShaper: {saved.shaper}")
+    if saved.picks:
+        click.echo(f"Picks:  {', '.join(str(path) for path in saved.picks)}")

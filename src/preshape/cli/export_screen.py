@@ -6,7 +6,7 @@ from rich.table import Table
 from rich.text import Text
 
 from preshape.cli.screens import console
-from preshape.export import TARGETS, Exported, ExportedSettings, SettingsTarget, Target
+from preshape.export import TARGETS, AnyTarget, Exported, ExportedSettings
 from preshape.workflow import SavedExport
 
 __all__ = ["export_screen", "held_by", "target_table"]
@@ -17,17 +17,30 @@ def target_table() -> None:
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), show_header=False)
     for target in TARGETS.values():
         table.add_row(Text(target.name, style="bold cyan"), target.summary)
-        table.add_row("", Text(f"version {' or '.join(target.versions)}; holds {held_by(target)}", style="dim"))
+        for versions, held in _held(target).items():
+            table.add_row("", Text(f"version {versions}: {held}", style="dim"))
     screen = console()
     screen.print(table)
-    screen.print("\nThe first version and precision named are the defaults. Targets that hold taps need --rate.")
+    screen.print(
+        "\nThe first version and precision named are the defaults; --target-version and --precision choose others. "
+        "Targets that hold taps need --rate."
+    )
 
 
-def held_by(target: Target | SettingsTarget) -> str:
+def held_by(target: AnyTarget) -> str:
     """What a target holds; where versions differ, each of them."""
-    if isinstance(target, Target) or not target.other_limits:
-        return str(target.limits)
-    return "; ".join(f"{version}: {target.limits_of(version)}" for version in target.versions)
+    held = _held(target)
+    if len(held) == 1:
+        return next(iter(held.values()))
+    return "; ".join(f"{versions}: {each}" for versions, each in held.items())
+
+
+def _held(target: AnyTarget) -> dict[str, str]:
+    """What the versions hold, those that hold the same together."""
+    alike: dict[str, list[str]] = {}
+    for version in target.versions:
+        alike.setdefault(str(target.limits_of(version)), []).append(version)
+    return {", ".join(versions): held for held, versions in alike.items()}
 
 
 def export_screen(exported: Exported | ExportedSettings, saved: SavedExport) -> None:

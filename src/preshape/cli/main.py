@@ -25,6 +25,7 @@ COMMANDS = {
     "simulate": "Simulate your machine under a command, unshaped beside shaped.",
     "verify": "Compare recordings of a move without and with the shaper, or write the moves.",
     "rerun": "Run again what a report says it was made from, and compare.",
+    "campaign": "Compute thousands of designs or simulations, here or on a cluster.",
     "reproduce": "Recompute what the papers print, with verdicts and figures.",
 }
 """Each in a module of its own, imported when it is called: help stays fast."""

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from rich.console import Console
+from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
@@ -14,17 +15,21 @@ from preshape.engine import is_proved_shortest
 from preshape.report import (
     Calibration,
     TextTable,
+    TradeOff,
     candidate_table,
     exclusion_sentence,
     gain_sentences,
     klipper_sentence,
+    limit_sentence,
     mode_table,
+    pick_table,
+    robustness_sentence,
 )
 from preshape.shaper import Shaper
 from preshape.vibration import high_frequency_gain
 from preshape.workflow import Analysis, SpectrumLeft
 
-__all__ = ["analysis_screen", "calibration_screen", "console", "shaper_screen", "spectrum_screen"]
+__all__ = ["analysis_screen", "calibration_screen", "console", "indented", "shaper_screen", "spectrum_screen"]
 
 FULL_WIDTH = 110
 """Columns assumed when the output is not a terminal, so that a table in a log file is not folded."""
@@ -56,9 +61,7 @@ def calibration_screen(calibration: Calibration) -> None:
     if calibration.klipper is not None:
         screen.print(Text(klipper_sentence(calibration)))
     if calibration.trade_off is not None:
-        screen.print(Text(f"\nWithin {calibration.trade_off.impulses} impulses", style="bold"))
-        for sentence in gain_sentences(calibration.trade_off)[1:]:
-            screen.print(f"  {sentence}")
+        _trade_off_screen(screen, calibration.trade_off, calibration.maximum_impulses)
 
 
 def shaper_screen(shaper: Shaper) -> None:
@@ -111,6 +114,25 @@ def analysis_screen(analysis: Analysis) -> None:
             f"{row.total_insensitivity:.4f}",
         )
     screen.print(table)
+
+
+def indented(text: str | Text, by: int = 2) -> Padding:
+    """A paragraph that is indented in all of its lines, however the terminal folds it."""
+    return Padding(text, (0, 0, 0, by), expand=False)
+
+
+def _trade_off_screen(screen: Console, trade: TradeOff, asked: int | None) -> None:
+    """The picks beside the stock choice; those that bear frequency errors worse are marked."""
+    styles = ["yellow" if one in trade.fragile else None for one in (trade.stock, *trade.picks)]
+    screen.print(_rich_table("\nWhat smoothing buys, by Klipper's measures", pick_table(trade), styles))
+    screen.print(limit_sentence(trade, asked))
+    for sentence in gain_sentences(trade)[1:]:
+        screen.print(indented(sentence))
+    off = robustness_sentence(trade)
+    if trade.fragile:
+        screen.print(Text(f"! {off}", style="bold yellow"))
+    elif off:
+        screen.print(indented(off))
 
 
 def spectrum_screen(left: Sequence[SpectrumLeft]) -> None:

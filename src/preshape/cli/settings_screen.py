@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from rich.text import Text
 
-from preshape.cli.screens import console
+from preshape.cli.screens import console, indented
 from preshape.report import Calibration
 from preshape.workflow import SavedCalibration
 
@@ -21,17 +23,18 @@ def settings_screen(calibration: Calibration, saved: SavedCalibration | None) ->
     screen = console()
     screen.print(Text("\nSettings to paste", style="bold"))
     for one in calibration.texts:
-        head = f"  {one.target} ({one.version})"
+        head = f"{one.target} ({one.version})"
         if not one.fits:
-            screen.print(Text(f"{head}: does not fit: {one.note}", style="dim"))
+            screen.print(indented(Text(f"{head}: does not fit: {one.note}", style="dim")))
             continue
         lines = one.text.splitlines()
-        where = "" if saved is None else _file_of(one.target, saved)
-        screen.print(f"{head}: {'; '.join(part for part in (where, one.note) if part) or 'as it is'}")
+        screen.print(indented(f"{head}: {one.note or 'as it is'}"))
+        for path in () if saved is None else _files_of(one.target, saved):
+            screen.print(f"    {path}", soft_wrap=True)
         if saved is None or len(lines) <= SHOWN_LINES:
             for line in lines:
                 screen.print(f"    {line}", soft_wrap=True)
 
 
-def _file_of(target: str, saved: SavedCalibration) -> str:
-    return ", ".join(str(path) for path in saved.settings if path.parent.name == target)
+def _files_of(target: str, saved: SavedCalibration) -> list[Path]:
+    return [path for path in saved.settings if path.parent.name == target]

@@ -5,12 +5,13 @@ from preshape.export.configure import ExportedSettings
 from preshape.export.frequency_response import frequency_response
 from preshape.export.paste_ready import PasteText, paste_ready
 from preshape.export.render import render
-from preshape.export.settings_target import Configured, SettingsTarget, Written
-from preshape.export.target import Exported, Files, Limits, Placed, Target
+from preshape.export.settings_target import Configured, Settings, SettingsTarget, Written
+from preshape.export.target import AnyTarget, Exported, Files, Limits, Placed, Taps, Target
 from preshape.export.targets import TARGETS
 
 __all__ = [
     "TARGETS",
+    "AnyTarget",
     "Configured",
     "Exported",
     "ExportedSettings",
@@ -18,7 +19,9 @@ __all__ = [
     "Limits",
     "PasteText",
     "Placed",
+    "Settings",
     "SettingsTarget",
+    "Taps",
     "Target",
     "Written",
     "frequency_response",

@@ -6,15 +6,13 @@ their amplitudes made exact there, never just rounded.
 
 from __future__ import annotations
 
-import math
 import re
 
-import numpy as np
-
 from preshape.errors import InputError
-from preshape.export.c_source import modes_left, text_of, title
-from preshape.export.target import Files, Limits, Placed, Target
-from preshape.shaper import Shaper
+from preshape.export.arithmetic import as_coefficients
+from preshape.export.c_source import modes_left, title
+from preshape.export.read_back import numbers_in, only_text, taps_in
+from preshape.export.target import Files, Limits, Placed, Taps, Target
 
 __all__ = ["ACS"]
 
@@ -45,27 +43,18 @@ def _render(placed: Placed) -> Files:
     return {f"{placed.name}.prg": "\n".join(lines)}
 
 
-def _parse(files: Files) -> Shaper:
-    text = text_of(files, ".prg")
+def _parse(files: Files) -> Taps:
+    text = only_text(files, ".prg")
     cycles, rows = CYCLE.findall(text), IMPULSE.findall(text)
     if len(cycles) != 1 or not 1 <= len(rows) <= MOST:
         raise InputError(f"the program holds {len(cycles)} cycles and {len(rows)} impulses: give one of an export.")
     if [row[1] for row in rows] != [str(index) for index in range(len(rows))]:
         raise InputError("the impulses are not numbered from 0 on: give a program that preshape export wrote.")
-    dt, *weights = (_number(word) for word in (cycles[0], *(row[4] for row in rows)))
+    dt, *_ = numbers_in(cycles[0], "cycles")
+    weights = numbers_in(",".join(row[4] for row in rows), "amplitudes")
     if any(row[3] != repr(1e3 * dt) for row in rows):
         raise InputError("the times are not multiples of the controller's cycle: give a program of an export.")
-    return Shaper(np.array([int(row[2]) for row in rows]) * np.float64(dt), weights)
-
-
-def _number(word: str) -> float:
-    try:
-        value = float(word)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise InputError(f"{word[:30]!r} is not a number as preshape export writes it.")
-    return value
+    return taps_in(dt, [int(row[2]) for row in rows], weights)
 
 
 def _next_step(placed: Placed) -> tuple[str, ...]:
@@ -82,5 +71,6 @@ ACS = Target(
     Limits(taps=MOST, samples=1 << 20),
     _render,
     _parse,
+    as_coefficients,
     _next_step,
 )

@@ -2,33 +2,22 @@
 
 from __future__ import annotations
 
-import math
 import re
 from importlib.resources import files as resources
 
-import numpy as np
-
 from preshape.errors import InputError
-from preshape.export.target import Files, Placed
-from preshape.shaper import Shaper
+from preshape.export.read_back import MOST_TAPS, taps_in
+from preshape.export.target import Placed, Taps
 
 __all__ = [
-    "TAPS_ALLOWED",
     "delay_rows",
     "filled",
     "modes_left",
-    "read_shaper",
     "real",
-    "text_of",
+    "taps_of_source",
     "title",
     "weight_rows",
 ]
-
-TAPS_ALLOWED = 1 << 16
-"""Most taps that are written or read."""
-
-LARGEST_FILE = 20_000_000
-"""Bytes; TAPS_ALLOWED taps take 5 MB."""
 
 WIDTH = 112
 """Columns of a row of delays."""
@@ -89,38 +78,19 @@ def filled(package: str, template: str, **values: object) -> str:
     return re.sub(r"@(\w+)@", lambda match: str(values[match[1]]), text)
 
 
-def text_of(files: Files, ending: str) -> str:
-    """The only file whose name ends like this, as text; InputError when there is not one."""
-    named = [name for name in files if name.endswith(ending)]
-    if len(named) != 1:
-        raise InputError(f"{len(named)} files end in {ending}: give the files of one export.")
-    content = files[named[0]]
-    if len(content) > LARGEST_FILE:
-        raise InputError(f"{named[0]} is larger than {LARGEST_FILE // 1_000_000} MB: it is not of preshape export.")
-    try:
-        return content.decode() if isinstance(content, bytes) else content
-    except UnicodeDecodeError:
-        raise InputError(f"{named[0]} is not text: give the file that preshape export wrote.") from None
-
-
-def read_shaper(text: str, single: bool) -> Shaper:
-    """The shaper whose sample time, delays and weights stand in C source, as the kernel applies it.
-
-    In single precision the last weight is what the others leave of 1.
+def taps_of_source(text: str, precision: str) -> Taps:
+    """The sample time, delays and weights that stand in C source, with every bit.
 
     Raises
     ------
     InputError
-        If one of them is not there as :func:`preshape.export.render` writes it, or they are no shaper.
+        If one of them is not there as :func:`preshape.export.render` writes it, or they are no shaper's.
     """
     dt = _real(_found(SAMPLE_TIME, text, "sample time"))
     delays = [_whole(word) for word in _words(_found(DELAYS, text, "delays"))]
-    weights = [_real(word.removesuffix("f") if single else word) for word in _words(_found(WEIGHTS, text, "weights"))]
-    if len(delays) != len(weights) or not delays:
-        raise InputError(f"the table has {len(delays)} delays and {len(weights)} weights: it needs one of each a tap.")
-    if single:
-        weights[-1] = 1.0 - math.fsum(weights[:-1])
-    return Shaper(np.array(delays) * np.float64(dt), weights)
+    suffix = "f" if precision == "single" else ""
+    weights = [_real(word.removesuffix(suffix)) for word in _words(_found(WEIGHTS, text, "weights"))]
+    return taps_in(dt, delays, weights, precision)
 
 
 def _found(pattern: re.Pattern[str], text: str, what: str) -> str:
@@ -134,8 +104,8 @@ def _words(text: str) -> list[str]:
     words = [word.strip() for word in COMMENT.sub("", text).split(",")]
     if words[-1] == "":
         words.pop()
-    if len(words) > TAPS_ALLOWED:
-        raise InputError(f"the table has {len(words)} entries: up to {TAPS_ALLOWED} are allowed.")
+    if len(words) > MOST_TAPS:
+        raise InputError(f"the table has {len(words)} entries: up to {MOST_TAPS} are allowed.")
     return words
 
 

@@ -1,4 +1,4 @@
-"""Sections of a Klipper configuration: settings of one section, numbers and lists of numbers among them."""
+"""Sections of a Klipper configuration: settings of one section, numbers and lists among them."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ import re
 from collections.abc import Mapping
 
 from preshape.errors import InputError
+from preshape.shaper import Shaper
 
-__all__ = ["number_of", "numbers_of", "section_of"]
+__all__ = ["impulse_lines", "number_of", "numbers_of", "section_of"]
 
 SAVED = re.compile(r"^#\*# (?=\[|\w+\s*[=:]| )", re.MULTILINE)
 """Begins a section, a setting or its continuation that SAVE_CONFIG has written; those count, and come last."""
@@ -42,6 +43,12 @@ def section_of(text: str, name: str) -> Mapping[str, str]:
     if not parser.has_section(name):
         raise InputError(f"there is no section [{name}]: give the part of printer.cfg that holds it.")
     return dict(parser.items(name))
+
+
+def impulse_lines(shaper: Shaper, axis: str, amplitudes: str, times: str, digits: str) -> list[str]:
+    """The impulses as two settings of an axis, called `amplitudes` and `times`, each number with these digits."""
+    lists = [(amplitudes, shaper.amplitudes.tolist()), (times, shaper.times.tolist())]
+    return [f"{key}_{axis}: {','.join(format(value, digits) for value in values)}" for key, values in lists]
 
 
 def number_of(settings: Mapping[str, str], keys: tuple[str, ...], default: float) -> float:

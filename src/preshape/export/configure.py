@@ -46,11 +46,11 @@ def configured_for(
     impulses_only(shaper, f"target {target.name}")
     _check(shaper, target.limits_of(version), f"target {target.name} ({version})")
     written = target.write(shaper, version, axes)
-    does = target.execute(written.text, version, axes[0] if axes else None)
+    does = target.run(written.text, version, axes[0] if axes else None)
     if shaper.design.modes is not None:  # what is left at the modes of the shaper, not at those of the setting
         settings = {**does.design.settings, "asked_for": shaper.design.family}
         does = recorded(does, replace(does.design, modes=shaper.design.modes, settings=settings))
-    configured = Configured(does, shaper, name, version, axes, written.notes)
+    configured = Configured(does, shaper, name, version, axes, written.notes, written.excess)
     text = _head(target, configured) + written.text
     return ExportedSettings(target, configured, {f"{name}{target.ending}": text, **written.beside})
 

@@ -1,10 +1,13 @@
-"""Kalico: the impulses themselves in its bleeding-edge-v2, its families in main."""
+"""Kalico: the impulses themselves in its bleeding-edge-v2, its families in main.
+
+The smoothers of bleeding-edge-v2, polynomials in time instead of impulses, are neither written nor executed here.
+"""
 
 from __future__ import annotations
 
 from preshape.errors import InputError
 from preshape.export.axes import of_axis
-from preshape.export.config_text import numbers_of, section_of
+from preshape.export.config_text import impulse_lines, numbers_of, section_of
 from preshape.export.family import executed
 from preshape.export.klipper.settings import execute_families, family_lines
 from preshape.export.klipper.versions import VERSIONS as KLIPPER
@@ -19,13 +22,18 @@ CUSTOM = "bleeding-edge-v2"
 
 FAMILIES = {CUSTOM: KLIPPER["2025-09"], "main": KLIPPER["old"]}
 
-LIMITS = Limits(taps=5, shortest=0.001, longest=0.2, smallest=0.001, resolution="to 9 digits")
+LIMITS = Limits(
+    taps=5, shortest=0.001, longest=0.2, smallest=0.001, resolution="to 9 digits", seconds=1e-9, amplitude=1e-9
+)
 MAIN = Limits(taps=None, resolution="a family, frequency to 0.01 Hz, damping to 0.0001")
 
 
-def _execute(text: str, version: str, axis: str | None = None) -> Shaper:
+def _run(text: str, version: str, axis: str | None = None) -> Shaper:
     settings = section_of(text, "input_shaper")
     kinds = {one: settings.get(f"shaper_type_{one}", settings.get("shaper_type", "")).strip() for one in AXES}
+    for one, kind in kinds.items():
+        if version == CUSTOM and kind.startswith("smooth") and axis in (None, one):
+            raise InputError(f"axis {one} has a smoother, {kind[:40]}: only impulses and families are executed here.")
     if version != CUSTOM or "custom" not in kinds.values():
         return execute_families(settings, FAMILIES[version], AXES, axis)
     found = {}
@@ -59,11 +67,7 @@ def _write(shaper: Shaper, version: str, axes: tuple[str, ...]) -> Written:
         return family_lines(shaper, FAMILIES[version], f"Kalico ({version})", axes, instead)
     lines = ["[input_shaper]"]
     for axis in axes:
-        lines += [
-            f"shaper_type_{axis}: custom",
-            f"shaper_a_{axis}: {','.join(f'{value:.9f}' for value in shaper.amplitudes)}",
-            f"shaper_t_{axis}: {','.join(f'{value:.9f}' for value in shaper.times)}",
-        ]
+        lines += [f"shaper_type_{axis}: custom", *impulse_lines(shaper, axis, "shaper_a", "shaper_t", ".9f")]
     return Written("\n".join(lines) + "\n")
 
 
@@ -77,7 +81,7 @@ KALICO = SettingsTarget(
     (CUSTOM, "main"),
     LIMITS,
     _write,
-    _execute,
+    _run,
     ".cfg",
     "#",
     AXES,

@@ -22,7 +22,7 @@ from preshape.export.target import Limits
 from preshape.mode import Mode
 from preshape.shaper import Shaper
 
-__all__ = ["CLASSIC", "FIXED_TIME", "FAMILIES", "classic_zv"]
+__all__ = ["FAMILIES", "MARLIN", "MARLIN_FT", "classic_zv"]
 
 AXES = ("x", "y", "z")
 
@@ -102,7 +102,7 @@ NUMBERS = ["none", *FAMILIES]
 OLD = {"zv": Family("zv", classic_zv)}
 
 
-def _execute_classic(text: str, version: str, axis: str | None = None) -> Shaper:
+def _run_classic(text: str, version: str, axis: str | None = None) -> Shaper:
     state: dict[str, dict[str, float]] = {one: {} for one in AXES}
     for words in commands(text, "M593"):
         values = {letter: value for letter in "FD" if (value := number_in(words, letter)) is not None}
@@ -117,7 +117,7 @@ def _execute_classic(text: str, version: str, axis: str | None = None) -> Shaper
     return of_axis(found, axis, AXES, "no shaper is set: F is 0 or missing.")
 
 
-def _execute_taps(text: str, version: str, axis: str | None = None) -> Shaper:
+def _run_taps(text: str, version: str, axis: str | None = None) -> Shaper:
     state: dict[str, dict[str, float]] = {one: {} for one in AXES}
     on = 1.0
     for words in commands(text, "M493"):
@@ -149,7 +149,7 @@ def _write_classic(shaper: Shaper, version: str, axes: tuple[str, ...]) -> Writt
     )
     text = "".join(f"M593 {axis.upper()} F{near.frequency:.2f} D{near.damping:.4f}\n" for axis in axes)
     notes = ("8-bit boards, whose timer has 16 bits, take frequencies above about 15 Hz.",)
-    return Written(text, (near.sentence("ZV", "Marlin's M593"), *notes))
+    return Written(text, (near.sentence("ZV", "Marlin's M593"), *notes), excess=near.excess)
 
 
 def _write_taps(shaper: Shaper, version: str, axes: tuple[str, ...]) -> Written:
@@ -174,33 +174,34 @@ def _write_taps(shaper: Shaper, version: str, axes: tuple[str, ...]) -> Written:
         for axis in axes
     ]
     note = "Taps lie on samples of 1 ms, so a small change of the frequency may change nothing, or half a sample."
-    return Written("M493 S1\n" + "".join(lines), (near.sentence(name, "Marlin's fixed-time motion"), note, *defines))
+    notes = (near.sentence(name, "Marlin's fixed-time motion"), note, *defines)
+    return Written("M493 S1\n" + "".join(lines), notes, excess=near.excess)
 
 
 def _next_step(configured: Configured) -> tuple[str, ...]:
     return (f"Send the lines of {configured.name}.g, look with M593 or M493 what is in force, and store it with M500.",)
 
 
-CLASSIC = SettingsTarget(
+MARLIN = SettingsTarget(
     "marlin",
     "M593 for Marlin's standard motion: a ZV",
     ("2.1",),
     Limits(taps=None, resolution="a ZV, amplitudes to 1/128, frequency to 0.01 Hz"),
     _write_classic,
-    _execute_classic,
+    _run_classic,
     ".g",
     ";",
     AXES,
     next_step=_next_step,
 )
 
-FIXED_TIME = SettingsTarget(
+MARLIN_FT = SettingsTarget(
     "marlin-ft",
     "M493 for Marlin's fixed-time motion: the nearest family",
     ("2.1",),
     Limits(taps=None, resolution="a family on samples of 1 ms"),
     _write_taps,
-    _execute_taps,
+    _run_taps,
     ".g",
     ";",
     AXES,

@@ -68,7 +68,7 @@ FAMILIES = {
 NUMBERS = list(FAMILIES)
 
 
-def _execute(text: str, version: str, axis: str | None = None) -> Shaper:
+def _run(text: str, version: str, axis: str | None = None) -> Shaper:
     low, high = RANGES[version]
     state: dict[str, dict[str, float]] = {one: {} for one in AXES}
     for words in commands(text, "M593"):
@@ -102,7 +102,7 @@ def _write(shaper: Shaper, version: str, axes: tuple[str, ...]) -> Written:
     number = NUMBERS.index(near.family.name)
     reduction = f" R{near.parameters['R']:g}" if near.parameters else " R20" if "ei" in near.family.name else ""
     lines = [f"M593 {axis.upper()} T{number} F{near.frequency:.2f} D{near.damping:.4f}{reduction}\n" for axis in axes]
-    return Written("".join(lines), (near.sentence(near.family.name, "Prusa's firmware"),))
+    return Written("".join(lines), (near.sentence(near.family.name, "Prusa's firmware"),), excess=near.excess)
 
 
 def _next_step(configured: Configured) -> tuple[str, ...]:
@@ -115,7 +115,7 @@ PRUSA = SettingsTarget(
     tuple(RANGES),
     Limits(taps=None, resolution="a family, frequency to 0.01 Hz, damping to 0.0001"),
     _write,
-    _execute,
+    _run,
     ".g",
     ";",
     AXES,

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 
-import numpy as np
-
 from preshape.errors import InputError
-from preshape.export.c_source import modes_left, text_of, title
-from preshape.export.target import Files, Limits, Placed, Target
-from preshape.shaper import Shaper
+from preshape.export.arithmetic import as_coefficients
+from preshape.export.c_source import modes_left, title
+from preshape.export.read_back import numbers_in, only_text, taps_in
+from preshape.export.target import Files, Limits, Placed, Taps, Target
 
 __all__ = ["PYTHON_CONTROL"]
 
@@ -42,7 +41,7 @@ def response(omega):
 '''
 
 MOST = 10_000
-PERIOD = re.compile(r"^DT = (\S{1,30})  # seconds$", re.MULTILINE)
+PERIOD = re.compile(r"^DT = ([^\s,]{1,30})  # seconds$", re.MULTILINE)
 DELAYS = re.compile(r"^DELAYS = \[([0-9, ]*)\]  # samples$", re.MULTILINE)
 WEIGHTS = re.compile(r"^WEIGHTS = \[\n([-+0-9.e, \n]*)\]$", re.MULTILINE)
 
@@ -57,22 +56,15 @@ def _render(placed: Placed) -> Files:
     return {f"{placed.name}.py": head + body}
 
 
-def _parse(files: Files) -> Shaper:
-    text = text_of(files, ".py")
-    found = [pattern.findall(text) for pattern in (PERIOD, DELAYS, WEIGHTS)]
-    if any(len(one) != 1 for one in found):
+def _parse(files: Files) -> Taps:
+    text = only_text(files, ".py")
+    period, delays, weights = (pattern.findall(text) for pattern in (PERIOD, DELAYS, WEIGHTS))
+    if not len(period) == len(delays) == len(weights) == 1:
         raise InputError(
             "the file does not hold DT, DELAYS and WEIGHTS once each: give one that preshape export wrote."
         )
-    try:
-        dt = float(found[0][0])
-        delays = [int(word) for word in found[1][0].split(",")]
-        weights = [float(word) for word in found[2][0].split(",") if word.strip()]
-    except ValueError:
-        raise InputError("the file holds something that is no number: give one that preshape export wrote.") from None
-    if len(delays) != len(weights) or len(delays) > MOST or max(delays) > 1 << 31:
-        raise InputError(f"{len(delays)} delays and {len(weights)} weights: give as many, up to {MOST}.")
-    return Shaper(np.array(delays) * np.float64(dt), weights)
+    (dt,) = numbers_in(period[0], "sample time")
+    return taps_in(dt, numbers_in(delays[0], "delays"), numbers_in(weights[0], "weights"))
 
 
 def _next_step(placed: Placed) -> tuple[str, ...]:
@@ -86,5 +78,6 @@ PYTHON_CONTROL = Target(
     Limits(taps=MOST, samples=1 << 20),
     _render,
     _parse,
+    as_coefficients,
     _next_step,
 )

@@ -1,51 +1,75 @@
-"""From the taps in an exported file back to a shaper."""
+"""From exported files back to what stands in them: the text that counts, and its taps."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from preshape.checks import positive
 from preshape.errors import InputError
-from preshape.shaper import Shaper
+from preshape.export.target import EPSILON, Files, Taps
 
-__all__ = ["MOST_BYTES", "SUM_TOLERANCE", "numbers_in", "shaper_of_taps", "text_of"]
+__all__ = ["LARGEST_FILE", "MOST_TAPS", "numbers_in", "only_text", "taps_in"]
 
-MOST_BYTES = 10_000_000
-"""Longer files are not ours: a hundred thousand taps take three megabytes."""
+LARGEST_FILE = 20_000_000
+"""Bytes; MOST_TAPS taps take 5 MB."""
 
-SUM_TOLERANCE = 1e-5
-"""How far weights rounded to single precision may be from a sum of 1."""
+MOST_TAPS = 1 << 16
+"""More are neither written nor read."""
+
+LONGEST = 1 << 31
+"""Samples of delay that are read."""
+
+SUM_TOLERANCE = 1e-9
+"""How far weights may sum from 1 beside what rounding them does, as of a Shaper."""
 
 
-def text_of(files: Mapping[str, str | bytes], wanted: str, suffixes: tuple[str, ...]) -> str:
-    """The text of the only file whose name ends with one of `suffixes` and that holds the string `wanted`."""
-    found = []
-    for name, content in files.items():
-        if name.lower().endswith(suffixes) and len(content) <= MOST_BYTES:
-            text = content if isinstance(content, str) else content.decode("utf-8", errors="replace")
-            if wanted in text:
-                found.append(text)
-    if len(found) != 1:
-        raise InputError(
-            f"{len(found)} of {len(files)} files named *{' or *'.join(suffixes)} hold a table of preshape's: give the "
-            "files of one export, as they were written."
-        )
-    return found[0]
+def only_text(files: Files, *endings: str, holding: str = "", most: int = LARGEST_FILE) -> str:
+    """The text of the only file whose name ends like this, in whatever case, and that holds the string `holding`.
+
+    What is no UTF-8 is replaced: comments may hold anything, and settings and tables are ASCII.
+
+    Raises
+    ------
+    InputError
+        If there is not exactly one, or it is longer than `most`.
+    """
+    sign = holding.encode()
+    named = [
+        name
+        for name, content in files.items()
+        if name.lower().endswith(endings) and (holding in content if isinstance(content, str) else sign in content)
+    ]
+    if len(named) != 1:
+        kind = f"are named *{' or *'.join(endings)}" + (" and hold a table of preshape's" if holding else "")
+        raise InputError(f"{len(named)} of {len(files)} files {kind}: give those of one export, as they were written.")
+    content = files[named[0]]
+    if len(content) > most:
+        raise InputError(f"{named[0]} is larger than {most // 1_000_000} MB: it is not of preshape export.")
+    return content.decode("utf-8", errors="replace") if isinstance(content, bytes) else content
 
 
 def numbers_in(text: str, what: str) -> list[float]:
-    """The numbers of a list separated by commas."""
+    """The numbers of a list separated by commas; a last comma may stand behind them.
+
+    Raises
+    ------
+    InputError
+        If something else stands there, or more than MOST_TAPS.
+    """
+    words = text.rstrip().removesuffix(",").split(",")
+    if len(words) > MOST_TAPS:
+        raise InputError(f"the file holds {len(words)} {what}: up to {MOST_TAPS} are read.")
     try:
-        return [float(word) for word in text.split(",")]
+        return [float(word) for word in words]
     except ValueError:
         raise InputError(f"the {what} in the file are not numbers: export it again.") from None
 
 
-def shaper_of_taps(dt: float, delays: Sequence[float], weights: Sequence[float]) -> Shaper:
-    """The shaper of taps as a target uses them: in single precision the last weight is what the others leave of 1.
+def taps_in(dt: float, delays: Sequence[float], weights: Sequence[float], precision: str = "double") -> Taps:
+    """The taps that stand in a file, number for number.
 
     Parameters
     ----------
@@ -54,23 +78,26 @@ def shaper_of_taps(dt: float, delays: Sequence[float], weights: Sequence[float])
     delays : sequence of float, shape (tap,)
         Delays [samples].
     weights : sequence of float, shape (tap,)
-        Weights [-]; of sum 1, or nearly, if they were rounded to single precision.
+        Weights [-]; of sum 1 to what their precision leaves of it.
+    precision : {"double", "single"}
+        Of the controller's numbers.
 
     Raises
     ------
     InputError
-        If they are no shaper.
+        If they are no taps of a shaper.
     """
     positive("the sample time in the file", dt, "s")
     d, w = np.array(delays, dtype=float), np.array(weights, dtype=float)
-    if d.size != w.size or d.size == 0 or not (d == np.rint(d)).all():
+    if d.size != w.size or d.size == 0 or not (np.isfinite(d).all() and (d == np.rint(d)).all()):
         raise InputError(
             f"the file holds {d.size} delays and {w.size} weights: one of each a tap is needed, delays whole."
         )
-    with np.errstate(over="ignore"):
-        single = bool((w.astype(np.float32) == w).all())
-    if single and abs(w.sum() - 1.0) <= SUM_TOLERANCE:
-        w[-1] = 1.0 - math.fsum(w[:-1])
-    if d[0] > 0.0:  # a shaper starts with the command
-        d, w = np.concatenate([[0.0], d]), np.concatenate([[0.0], w])
-    return Shaper(d * np.float64(dt), w)
+    if d[0] != 0.0 or (np.diff(d) <= 0.0).any() or d[-1] > LONGEST:
+        raise InputError("the delays in the file do not increase from 0: export it again.")
+    if not np.isfinite(w).all():
+        raise InputError("the file holds a weight that is not finite: export it again.")
+    total, size = math.fsum(w), float(np.abs(w).sum())
+    if not abs(total - 1.0) <= SUM_TOLERANCE + w.size * EPSILON[precision] * size:
+        raise InputError(f"the weights in the file sum to {total:.9g}, not 1: export it again.")
+    return Taps(float(dt), d.astype(np.uint32), w, precision)

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import replace
 from typing import overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from preshape.checks import positive
 from preshape.design.on_grid import on_grid
 from preshape.errors import InputError
 from preshape.export.configure import ExportedSettings, configured_for
 from preshape.export.settings_target import SettingsTarget
-from preshape.export.target import Exported, Placed, Target
+from preshape.export.target import PRECISIONS, Exported, Placed, Taps, Target
 from preshape.export.targets import TARGETS
+from preshape.provenance import Design
 from preshape.shaper import Shaper
 from preshape.vibration import residual_vibration
 
@@ -26,9 +25,6 @@ NAME = re.compile(r"[a-z][a-z0-9_]{0,30}")
 
 TAKEN = "preshape"
 """Names that begin so are the kernel's own."""
-
-LARGEST_SUM = 1e6
-"""Most that the sizes of the weights may sum to: what the kernel takes."""
 
 
 @overload
@@ -130,7 +126,7 @@ def render(
     if target not in TARGETS:
         raise InputError(f"target {target!r} is not known: it is {', '.join(TARGETS)}.")
     chosen = TARGETS[target]
-    version = _one_of("version", version, chosen.versions, target)
+    version = chosen.version_of(version)
     if not (isinstance(name, str) and NAME.fullmatch(name)) or name.startswith(TAKEN):
         raise InputError(
             f"name {name!r} cannot be used in every language: give a lower-case letter and up to 30 lower-case "
@@ -143,35 +139,33 @@ def render(
     if dt is None or axis is not None:
         raise InputError(f"target {target} works on samples of one axis: say the sample rate, and leave the axis out.")
     precision = _one_of("precision", precision, chosen.limits.precisions, target)
-    placed = _placed(shaper, positive("dt", dt, "s"), grid, name, precision, version)
-    _check(chosen, placed)
+    placed = _placed(chosen, shaper, positive("dt", dt, "s"), grid, name, precision, version)
     files = chosen.render(placed)
     return Exported(chosen, placed, files, chosen.notes(files))
 
 
-def _placed(shaper: Shaper, dt: float, grid: str | None, name: str, precision: str, version: str) -> Placed:
-    """The shaper on the grid, in the controller's precision."""
+def _placed(
+    target: Target, shaper: Shaper, dt: float, grid: str | None, name: str, precision: str, version: str
+) -> Placed:
+    """The shaper on the grid, in the controller's precision, and what the target makes of it."""
     if grid is None:  # the best that the shaper's record allows
         grid = "linear" if shaper.design.modes is None else "exact"
     on = on_grid(shaper, dt, grid)
     delays, weights = on.taps(dt)
-    if delays[0] > 0:  # the shaper keeps an impulse of amplitude 0 there, which the taps leave out
-        delays, weights = np.insert(delays, 0, 0), np.insert(weights, 0, 0.0)
-    if precision == "single":
-        weights = weights.astype(np.float32).astype(float)
-        on = _rounded(on, delays, weights, dt)
-    return Placed(on, dt, delays.astype(np.uint32), weights, name, precision, version)
+    rounded = weights.astype(PRECISIONS[precision]).astype(np.float64)
+    taps = Taps(dt, delays.astype(np.uint32), rounded, precision)
+    target.check(taps)
+    does = _with_residuals(target.run(taps), on.design)
+    return Placed(dt, taps.delays, rounded, precision, does, name, version)
 
 
-def _rounded(shaper: Shaper, delays: NDArray[np.intp], weights: NDArray[np.float64], dt: float) -> Shaper:
-    """The shaper of these weights, the last one what the others leave of 1, and what that leaves at the modes."""
-    whole = [*weights[:-1].tolist(), 1.0 - math.fsum(weights[:-1])]
-    rounded = Shaper(delays * np.float64(dt), whole, shaper.design)
-    if (modes := shaper.design.modes) is None:
-        return rounded
-    left = residual_vibration(rounded, [mode.frequency for mode in modes], [mode.damping for mode in modes])
-    settings = {**shaper.design.settings, "residuals": left.tolist()}
-    return rounded.with_design(replace(shaper.design, settings=settings, residual=float(left.max())))
+def _with_residuals(shaper: Shaper, design: Design) -> Shaper:
+    """The shaper with this record, and in it what exactly this shaper leaves at the modes."""
+    if (modes := design.modes) is None:
+        return shaper.with_design(design)
+    left = residual_vibration(shaper, [mode.frequency for mode in modes], [mode.damping for mode in modes])
+    settings = {**design.settings, "residuals": left.tolist()}
+    return shaper.with_design(replace(design, settings=settings, residual=float(left.max())))
 
 
 def _one_of(what: str, given: str | None, allowed: tuple[str, ...], target: str) -> str:
@@ -180,25 +174,3 @@ def _one_of(what: str, given: str | None, allowed: tuple[str, ...], target: str)
     if given not in allowed:
         raise InputError(f"{what} {given!r} is not known for target {target}: it is {' or '.join(allowed)}.")
     return given
-
-
-def _check(target: Target, placed: Placed) -> None:
-    limits, taps = target.limits, placed.delays.size
-    at = f"at dt = {placed.dt:g} s and target {target.name} holds"
-    if limits.taps is not None and taps > limits.taps:
-        raise InputError(
-            f"the shaper has {taps} taps {at} {limits.taps}: design one with fewer impulses, or sample less often."
-        )
-    if limits.samples is not None and placed.latency_samples > limits.samples:
-        raise InputError(
-            f"the shaper is {placed.latency_samples} samples long {at} {limits.samples}: sample less often."
-        )
-    if not limits.negative and float(placed.weights.min()) < 0.0:
-        raise InputError(
-            f"the shaper has negative taps, which target {target.name} cannot hold: design a positive one."
-        )
-    if not (size := float(np.abs(placed.weights).sum())) <= LARGEST_SUM:
-        raise InputError(
-            f"the sizes of the shaper's weights sum to {size:g}, and {LARGEST_SUM:g} is the most: design a shaper with "
-            "smaller negative impulses."
-        )

@@ -37,7 +37,12 @@ MOST_EXTRA = 4
 """Values that H and T hold; the last impulse follows from the others."""
 
 HIGHEST_FREQUENCY = 1000.0
-LIMITS = Limits(taps=MOST_EXTRA + 1, resolution="amplitudes to 1e-6, times to 1.33 µs")
+LIMITS = Limits(
+    taps=MOST_EXTRA + 1,
+    resolution="amplitudes to 1e-6, times to 1.33 µs",
+    seconds=1.0 / STEP_CLOCK,
+    amplitude=1e-6,
+)
 
 DEFAULT_FREQUENCY = 40.0
 
@@ -154,7 +159,7 @@ def _mode(release: Version, name: str, frequency: float, damping: float) -> Mode
     return Mode(frequency, damping)
 
 
-def _execute(text: str, version: str, axis: str | None = None) -> Shaper:
+def _run(text: str, version: str, axis: str | None = None) -> Shaper:
     if axis is not None:
         raise InputError("RepRapFirmware has one shaper for all axes: leave the axis out.")
     release = VERSIONS[version]
@@ -229,7 +234,7 @@ RRF = SettingsTarget(
     tuple(VERSIONS),
     LIMITS,
     _write,
-    _execute,
+    _run,
     ".g",
     ";",
     other_limits={"3.5": replace(LIMITS, negative=False)},

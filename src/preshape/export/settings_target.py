@@ -1,6 +1,6 @@
 """A target that takes settings instead of samples: text in its words, and what the controller does with them.
 
-`write` puts a shaper into words, `execute` knows what the controller makes of such words, whoever wrote them. So the
+`write` puts a shaper into words, `run` knows what the controller makes of such words, whoever wrote them. So the
 shaper of an export is never what was meant, but what its text does; rounding, approximation and the firmware's own
 slips included.
 """
@@ -15,11 +15,12 @@ from typing import Protocol
 import numpy as np
 
 from preshape.errors import InputError
-from preshape.export.target import Files, Limits
+from preshape.export.read_back import only_text
+from preshape.export.target import AnyTarget, Files, Limits
 from preshape.shaper import Shaper
 from preshape.vibration import residual_vibration
 
-__all__ = ["Configured", "Execute", "SettingsTarget", "Written", "text_among"]
+__all__ = ["Configured", "Run", "Settings", "SettingsTarget", "Written"]
 
 LARGEST_TEXT = 1_000_000
 """Characters; settings are a page or two."""
@@ -28,7 +29,7 @@ MARK = re.compile(r"preshape export: (\S{1,40}) version (\S{1,40})")
 """What the first line of every export says, after the target's sign for a comment."""
 
 
-class Execute(Protocol):
+class Run(Protocol):
     """What a controller does with settings."""
 
     def __call__(self, text: str, version: str, axis: str | None = None) -> Shaper:
@@ -46,6 +47,22 @@ class Execute(Protocol):
 
 
 @dataclass(frozen=True)
+class Settings:
+    """What stands in a file with settings.
+
+    Parameters
+    ----------
+    text : str
+        The settings, among whatever else stands there.
+    version : str
+        Of the firmware that they are for: what an export says of itself, otherwise the target's first.
+    """
+
+    text: str
+    version: str
+
+
+@dataclass(frozen=True)
 class Written:
     """A shaper in a target's words.
 
@@ -57,11 +74,15 @@ class Written:
         What was changed or chosen, a sentence each.
     beside : mapping of str to str
         More files that the target needs, by name.
+    excess : float
+        The most vibration [-] that is left within 10 % of the modes beyond what the shaper leaves, where a setting that
+        comes near it is written instead of its impulses.
     """
 
     text: str
     notes: tuple[str, ...] = ()
     beside: Mapping[str, str] = field(default_factory=dict)
+    excess: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -82,6 +103,8 @@ class Configured:
         Which axes are set; empty where the target has one shaper for everything.
     notes : tuple of str
         What was changed or chosen, a sentence each.
+    excess : float
+        As of :class:`Written`; 0 for a target that takes impulses.
     """
 
     shaper: Shaper
@@ -90,6 +113,7 @@ class Configured:
     version: str
     axes: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    excess: float = 0.0
 
     @property
     def residuals(self) -> tuple[tuple[float, float], ...]:
@@ -102,22 +126,16 @@ class Configured:
 
 
 @dataclass(frozen=True)
-class SettingsTarget:
+class SettingsTarget(AnyTarget):
     """One way out, in the words of a controller.
 
     Parameters
     ----------
-    name : str
-        What the command line calls it.
-    summary : str
-        One line on what comes out, and where it goes.
-    versions : tuple of str
-        Of the controller's firmware, the default first.
-    limits : Limits
-        What it can hold.
+    name, summary, versions, limits
+        As of :class:`AnyTarget`.
     write : callable
         (shaper, version, axes) -> :class:`Written`. The shaper is within the limits.
-    execute : Execute
+    run : Run
         What the controller does with settings.
     ending : str
         Of the file's name.
@@ -131,12 +149,8 @@ class SettingsTarget:
         What the user does with the files, as lines of text.
     """
 
-    name: str
-    summary: str
-    versions: tuple[str, ...]
-    limits: Limits
     write: Callable[[Shaper, str, tuple[str, ...]], Written]
-    execute: Execute
+    run: Run
     ending: str
     comment: str
     axes: tuple[str, ...] = ()
@@ -147,24 +161,17 @@ class SettingsTarget:
         """What a version can hold."""
         return self.other_limits.get(version, self.limits)
 
-    def parse(self, files: Files, axis: str | None = None) -> Shaper:
-        """What the controller does with exported files; InputError when there are no such settings."""
-        text = text_among(files, self.ending)
+    def parse(self, files: Files | str) -> Settings:
+        """The settings in exported files, or in a file of any name, or in a text; InputError when there are none."""
+        named = {self.ending: files} if isinstance(files, str) else files
+        text = only_text(named, "" if len(named) == 1 else self.ending, most=LARGEST_TEXT)
         mark = MARK.search(text[:200])
         if mark is not None and (mark[1] != self.name or mark[2] not in self.versions):
             raise InputError(f"the file is for target {mark[1]} {mark[2]}: give one for target {self.name}.")
-        return self.execute(text, self.versions[0] if mark is None else mark[2], axis)
+        return Settings(text, self.versions[0] if mark is None else mark[2])
 
-
-def text_among(files: Files, ending: str) -> str:
-    """The only file whose name ends like this, as text; InputError when there is not one."""
-    named = [name for name in files if name.endswith(ending)]
-    if len(named) != 1:
-        raise InputError(f"{len(named)} files end in {ending}: give the files of one export.")
-    content = files[named[0]]
-    if len(content) > LARGEST_TEXT:
-        raise InputError(f"{named[0]} is larger than {LARGEST_TEXT // 1_000_000} MB: it holds more than settings.")
-    try:
-        return content.decode() if isinstance(content, bytes) else content
-    except UnicodeDecodeError:
-        raise InputError(f"{named[0]} is not text: give the file that preshape export wrote.") from None
+    def execute(self, files: Files | str, version: str | None = None, axis: str | None = None) -> Shaper:
+        """As :class:`AnyTarget` says."""
+        given = None if version is None else self.version_of(version)
+        found = self.parse(files)
+        return self.run(found.text, given or found.version, axis)

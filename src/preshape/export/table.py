@@ -31,7 +31,7 @@ def _write_csv(shaper: Shaper, version: str, axes: tuple[str, ...]) -> Written:
     return Written("\n".join([",".join(TITLES), *rows]) + "\n")
 
 
-def _execute_csv(text: str, version: str, axis: str | None = None) -> Shaper:
+def _run_csv(text: str, version: str, axis: str | None = None) -> Shaper:
     _one_shaper(axis)
     rows = [row for row in csv.reader(line for line in text.splitlines() if not line.startswith("#")) if row]
     if not rows or rows[0] != TITLES or not 1 < len(rows) <= MOST + 1:
@@ -49,7 +49,7 @@ def _write_json(shaper: Shaper, version: str, axes: tuple[str, ...]) -> Written:
     return Written(to_json({"times": shaper.times.tolist(), "amplitudes": shaper.amplitudes.tolist()}))
 
 
-def _execute_json(text: str, version: str, axis: str | None = None) -> Shaper:
+def _run_json(text: str, version: str, axis: str | None = None) -> Shaper:
     _one_shaper(axis)
     try:
         found = msgspec.json.decode(text, type=_Impulses)
@@ -73,7 +73,7 @@ CSV = SettingsTarget(
     ("1",),
     LIMITS,
     _write_csv,
-    _execute_csv,
+    _run_csv,
     ".csv",
     "#",
 )
@@ -83,7 +83,7 @@ JSON = SettingsTarget(
     ("1",),
     LIMITS,
     _write_json,
-    _execute_json,
+    _run_json,
     ".json",
     "",
 )

@@ -8,10 +8,10 @@ from preshape.export.acs import ACS
 from preshape.export.c import C
 from preshape.export.fmu import FMU
 from preshape.export.kalico import KALICO
-from preshape.export.klipper.plugin import PLUGIN
+from preshape.export.klipper.plugin import KLIPPER_PLUGIN
 from preshape.export.klipper.settings import KLIPPER
 from preshape.export.linuxcnc import LINUXCNC
-from preshape.export.marlin import CLASSIC, FIXED_TIME
+from preshape.export.marlin import MARLIN, MARLIN_FT
 from preshape.export.prusa import PRUSA
 from preshape.export.python_control import PYTHON_CONTROL
 from preshape.export.rrf import RRF
@@ -36,11 +36,11 @@ TARGETS = _by_name(
         ST,
         FMU,
         KLIPPER,
-        PLUGIN,
+        KLIPPER_PLUGIN,
         KALICO,
         RRF,
-        CLASSIC,
-        FIXED_TIME,
+        MARLIN,
+        MARLIN_FT,
         PRUSA,
         ACS,
         TWINCAT,
@@ -50,3 +50,4 @@ TARGETS = _by_name(
         JSON,
     )
 )
+"""Every target by the name that `preshape export` knows it by."""

@@ -1,6 +1,7 @@
 """Beckhoff TwinCAT 3: coefficient arrays of a FIR filter, for FB_CTRL_DIGITAL_FILTER of TF4100 or any other FIR block.
 
 A shaper on samples is a FIR filter with few taps: b holds one coefficient for each sample of delay, a its leading 1.
+Its FLOAT is taken for LREAL, double; a controller where it is REAL would round each coefficient once more.
 """
 
 from __future__ import annotations
@@ -10,9 +11,10 @@ import re
 import numpy as np
 
 from preshape.errors import InputError
-from preshape.export.c_source import modes_left, text_of, title
-from preshape.export.target import Files, Limits, Placed, Target
-from preshape.shaper import Shaper
+from preshape.export.arithmetic import as_coefficients
+from preshape.export.c_source import modes_left, title
+from preshape.export.read_back import numbers_in, only_text, taps_in
+from preshape.export.target import Files, Limits, Placed, Taps, Target
 
 __all__ = ["TWINCAT"]
 
@@ -69,8 +71,8 @@ def _rows(coefficients: np.ndarray) -> list[str]:
     return [*rows, row] if row.strip() else rows
 
 
-def _parse(files: Files) -> Shaper:
-    text = text_of(files, ".txt")
+def _parse(files: Files) -> Taps:
+    text = only_text(files, ".txt")
     periods, arrays = PERIOD.findall(text), ARRAY.findall(text)
     if len(periods) != 1 or len(arrays) != 1:
         raise InputError(f"the file holds {len(periods)} task periods and {len(arrays)} arrays: give one of an export.")
@@ -80,19 +82,12 @@ def _parse(files: Files) -> Shaper:
         count = int(item[1] or 1) if item is not None else 0
         if item is None or len(values) + count > LONGEST + 1:
             raise InputError(f"{word.strip()[:30]!r} is no coefficient, or there are more than {LONGEST + 1}.")
-        values += [_number(item[2])] * count
+        values += numbers_in(item[2], "coefficients") * count
     if len(values) != int(arrays[0][0]):
         raise InputError(f"the array of {arrays[0][0]} holds {len(values)} coefficients: give one of an export.")
-    delays = np.flatnonzero(values)
-    delays = delays if delays.size and delays[0] == 0 else np.insert(delays, 0, 0)
-    return Shaper(delays * np.float64(_number(periods[0])), np.array(values)[delays])
-
-
-def _number(word: str) -> float:
-    try:
-        return float(word)
-    except ValueError:
-        raise InputError(f"{word[:30]!r} is not a number as preshape export writes it.") from None
+    delays = sorted({0, *np.flatnonzero(values).tolist()})  # a first one of 0 says that the shaper begins with a delay
+    dt, *_ = numbers_in(periods[0], "task periods")
+    return taps_in(dt, delays, [values[delay] for delay in delays])
 
 
 def _next_step(placed: Placed) -> tuple[str, ...]:
@@ -109,5 +104,6 @@ TWINCAT = Target(
     Limits(taps=LONGEST + 1, samples=LONGEST),
     _render,
     _parse,
+    as_coefficients,
     _next_step,
 )

@@ -53,7 +53,7 @@ def _write(shaper: Shaper, version: str, axes: tuple[str, ...]) -> Written:
     return Written(TEMPLATE.format(amplitudes=amplitudes, times=times))
 
 
-def _execute(text: str, version: str, axis: str | None = None) -> Shaper:
+def _run(text: str, version: str, axis: str | None = None) -> Shaper:
     if axis is not None:
         raise InputError("the generator is made for one axis: leave the axis out.")
     amplitudes, times = (_numbers(name, text) for name in ("AMPLITUDES", "TIMES"))
@@ -90,7 +90,7 @@ ZABER = SettingsTarget(
     ("zaber-motion",),
     Limits(taps=MOST, resolution="every bit"),
     _write,
-    _execute,
+    _run,
     ".py",
     "#",
     next_step=_next_step,

@@ -10,6 +10,7 @@ from preshape.identify.decay_modes import FEWEST_SAMPLES, check_wishes, ring_dow
 from preshape.identify.identification import Identification
 from preshape.identify.joint import jointly
 from preshape.identify.klipper_sweep import Sweep
+from preshape.identify.known_input import modes_of_known_input
 from preshape.identify.measurement import Measurement, TimeSeries
 from preshape.identify.operational_modes import is_stationary, operational_modes
 from preshape.identify.response_modes import modes_of_sweep
@@ -24,7 +25,7 @@ def find_modes(
     *,
     damping: float | None = None,
     maximum: int = 4,
-    excitation: Sweep | None = None,
+    excitation: Sweep | str | None = None,
 ) -> Identification:
     """Find the modes in a measurement, or in several of one machine.
 
@@ -42,8 +43,9 @@ def find_modes(
         Fixes all damping ratios instead of fitting them.
     maximum : int
         Largest number of modes.
-    excitation : Sweep, optional
-        The sweep that was commanded; found in Klipper's raw data unless given.
+    excitation : Sweep or str, optional
+        The sweep that was commanded; found in Klipper's raw data unless given. Or the name of the channel that holds
+        the input (a force, a command), whatever it was: noise, a sweep, a move.
 
     Returns
     -------
@@ -55,7 +57,8 @@ def find_modes(
     MeasurementError
         If the measurement is too short, or constant.
     InputError
-        If `damping` or `maximum` make no sense, there is no measurement, or a sweep is named for a spectrum.
+        If `damping` or `maximum` make no sense, there is no measurement, the input is not one of its channels, or
+        an excitation is named for a spectrum.
 
     Notes
     -----
@@ -80,10 +83,14 @@ def find_modes(
     return _found(measurement, damping, maximum, excitation)
 
 
-def _found(measurement: Measurement, damping: float | None, maximum: int, excitation: Sweep | None) -> Identification:
+def _found(
+    measurement: Measurement, damping: float | None, maximum: int, excitation: Sweep | str | None
+) -> Identification:
     if not isinstance(measurement, TimeSeries):
         if excitation is not None:
-            raise InputError("a sweep was named for a spectrum, which has no time: give the raw data, or no sweep.")
+            raise InputError(
+                "an excitation was named for a spectrum, which has no time: give the raw data, or no excitation."
+            )
         return modes_of_spectrum(measurement, damping, maximum)
     if measurement.values.shape[-1] < FEWEST_SAMPLES:
         name = measurement.source or "the time series"
@@ -91,6 +98,8 @@ def _found(measurement: Measurement, damping: float | None, maximum: int, excita
             f"{name}: {measurement.values.shape[-1]} samples are too few to find modes; "
             f"record at least {FEWEST_SAMPLES}."
         )
+    if isinstance(excitation, str):
+        return modes_of_known_input(measurement, excitation, damping, maximum)
     if excitation is not None or is_sweep(measurement):
         return modes_of_sweep(measurement, excitation, damping, maximum)
     first = operational_modes(measurement, damping=damping, maximum=maximum) if is_stationary(measurement) else None

@@ -11,11 +11,21 @@ from preshape.identify.measurement import Spectrum
 from preshape.identify.stabilisation import Stabilisation
 from preshape.mode import Mode
 
-__all__ = ["FREQUENCY_RESPONSE", "IdentifiedMode", "Identification", "OPERATIONAL", "RING_DOWN", "SPECTRUM_FIT"]
+__all__ = [
+    "FREQUENCY_RESPONSE",
+    "IdentifiedMode",
+    "KNOWN_INPUT",
+    "Identification",
+    "OPERATIONAL",
+    "RING_DOWN",
+    "SPECTRUM_FIT",
+    "mode_of_logarithms",
+]
 
 RING_DOWN = "ring-down"
 SPECTRUM_FIT = "spectrum fit"
 FREQUENCY_RESPONSE = "frequency response"
+KNOWN_INPUT = "known input"
 OPERATIONAL = "operational"
 
 
@@ -61,7 +71,8 @@ class Identification:
     fitted : ndarray, shape (frequency,)
         The model's curve at `spectrum.frequencies`; NaN outside the band that was fitted.
     method : str
-        'ring-down', 'spectrum fit', 'frequency response' or 'operational'; of several measurements, all that were used.
+        'ring-down', 'spectrum fit', 'frequency response', 'known input' or 'operational'; of several measurements, all
+        that were used.
     trouble : tuple of str
         Sentences on what is wrong with the measurement or the machine; empty when healthy.
     clear : bool
@@ -80,3 +91,11 @@ class Identification:
     clear: bool
     stabilisation: Stabilisation | None = None
     each: tuple[Identification, ...] = ()
+
+
+def mode_of_logarithms(mode: Mode, half: float, damping_half: float, share: float) -> IdentifiedMode:
+    """A mode whose 95 % intervals are symmetric in the logarithms of frequency and damping, with these half-widths."""
+    spread, ratio_spread = float(np.exp(half)), float(np.exp(min(damping_half, 20.0)))
+    frequencies = mode.frequency / spread, mode.frequency * spread
+    ratios = mode.damping / ratio_spread, min(mode.damping * ratio_spread, 1.0)
+    return IdentifiedMode(mode, frequencies, ratios, share)

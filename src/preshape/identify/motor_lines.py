@@ -29,7 +29,13 @@ LOWEST_LINE = STRUCTURAL + 2.0 / WINDOW
 
 GATE = 0.02
 """Length of the shorter windows [s] in which it is asked whether taking a line out leaves less power: a line must not
-be smeared past the stop, into the ringing that matters."""
+be smeared past the stop, into the ringing that matters.
+
+Chosen on four real captures. On simulated ones (modes of 41, 70, 110 Hz, lines of 149.5, 220, 400 Hz) it does not
+matter from 10 to 40 ms: the frequency found is within 0.16 % of the true one, the damping ratio within 2.8 %; at 5 ms
+it is up to 4.5 % low, because parts of a period are gated. On the real ones it does: the unshaped runs 29 keep their
+modes (X 44.5 to 46.1 Hz and 57 to 61 Hz, damping ratio 0.06 to 0.12; Y 39 and 50 Hz), but of the shaped runs 30, where
+little rings, even the number of modes changes. Those are not known better than that."""
 
 FEWEST_WINDOWS = 5
 """A record shorter than so many half windows does not tell persistence."""

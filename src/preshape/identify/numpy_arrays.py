@@ -80,7 +80,15 @@ def _archive(file: SourceFile) -> dict[str, NDArray[Any]]:
             return arrays
     except MeasurementError:
         raise
-    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, ValueError, RuntimeError, NotImplementedError) as error:
+    except (
+        zipfile.BadZipFile,  # no directory, a wrong checksum
+        zlib.error,  # damaged compressed bytes
+        EOFError,  # fewer bytes than the directory promises
+        OSError,  # an offset before the file
+        ValueError,  # a name or a date that is none
+        RuntimeError,  # an encrypted member
+        NotImplementedError,  # a method of compression, or a version, that Python does not have
+    ) as error:
         raise MeasurementError(f"{file.name}: the archive is damaged ({_words(error)}); copy it again.") from None
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from preshape.identify import klipper_raw
 from preshape.identify.frequency_response import noise_of
-from preshape.identify.identification import FREQUENCY_RESPONSE, Identification, IdentifiedMode
+from preshape.identify.identification import FREQUENCY_RESPONSE, Identification, IdentifiedMode, mode_of_logarithms
 from preshape.identify.klipper_sweep import Sweep
 from preshape.identify.measurement import Spectrum, TimeSeries
 from preshape.identify.response_fit import WIDEST_INTERVAL, ResponseFit, fit_response
@@ -106,14 +106,8 @@ def _modes(fit: ResponseFit, maximum: int, fixed: float | None) -> tuple[Identif
     found = []
     for j in np.flatnonzero(good & (share >= SMALLEST_SHARE)):
         frequency, ratio = float(fit.natural[j]), float(fit.damping[j]) if fixed is None else fixed
-        spread, ratio_spread = float(np.exp(half[j])), float(np.exp(min(half[count + j], 20.0)))
         found.append(
-            IdentifiedMode(
-                Mode(frequency, ratio),
-                (frequency / spread, frequency * spread),
-                (ratio / ratio_spread, min(ratio * ratio_spread, 1.0)),
-                float(share[j]),
-            )
+            mode_of_logarithms(Mode(frequency, ratio), float(half[j]), float(half[count + j]), float(share[j]))
         )
     return tuple(sorted(found, key=lambda mode: -mode.share)[:maximum])
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from preshape.errors import MeasurementError
 from preshape.identify import rrf_capture
 from preshape.identify.free_decay import PRINTER_BAND
-from preshape.identify.identification import SPECTRUM_FIT, Identification, IdentifiedMode
+from preshape.identify.identification import SPECTRUM_FIT, Identification, IdentifiedMode, mode_of_logarithms
 from preshape.identify.measurement import Spectrum
 from preshape.identify.spectral_model import SpectralModel
 from preshape.identify.spectrum_fit import BACKGROUND_DAMPING, WIDEST_INTERVAL, SpectrumFit, fit_modes
@@ -133,13 +133,9 @@ def _modes(fit: SpectrumFit, share: _Array, maximum: int, fixed: float | None) -
             continue
         if fixed is None and ratio >= BACKGROUND_DAMPING:
             continue
-        spread, ratio_spread = float(np.exp(deviation[j])), float(np.exp(min(deviation[count + j], 20.0)))
         found.append(
-            IdentifiedMode(
-                Mode(frequency, ratio),
-                (frequency / spread, frequency * spread),
-                (ratio / ratio_spread, min(ratio * ratio_spread, 1.0)),
-                float(share[j]),
+            mode_of_logarithms(
+                Mode(frequency, ratio), float(deviation[j]), float(deviation[count + j]), float(share[j])
             )
         )
     return tuple(sorted(found, key=lambda mode: -mode.share)[:maximum])

@@ -15,6 +15,7 @@ from preshape.papers.slides import SLIDES
 __all__ = ["PAPERS", "papers_named"]
 
 PAPERS: tuple[Paper, ...] = (HYDE, SINGER, SINGH, SLIDES, ROBERTSON)
+"""The papers, in the order in which `preshape reproduce` shows them."""
 
 
 def papers_named(names: Iterable[str] = ()) -> list[Paper]:

@@ -120,6 +120,22 @@ class FlexibleStructure:
         modes = retuned_modes(self._modes, frequency_ratio, damping_ratio)
         return FlexibleStructure(modes, self._gains, self._looks, input=self._input, unit=self._unit)
 
+    def with_modes(self, modes: ModesLike) -> FlexibleStructure:
+        """The structure with other frequencies and damping ratios, mode by mode; shapes and gains stay.
+
+        Raises
+        ------
+        InputError
+            If they are not as many.
+
+        Examples
+        --------
+        >>> structure = FlexibleStructure([(1.0, 0.0), (3.0, 0.0)], [1.0, 1.0], {"tip": Output((1.0, 1.0), unit="m")})
+        >>> structure.with_modes([(1.1, 0.0), (2.9, 0.01)]).modes()
+        Modes([(1.1, 0.0), (2.9, 0.01)])
+        """
+        return FlexibleStructure(modes, self._gains, self._looks, input=self._input, unit=self._unit)
+
     def motion(self, command: Profile) -> Motion:
         """The exact motion under a Profile of the input, at rest at 0 before it: at any time, peaks between samples."""
         return exact_motion(self._modes, command, forces=self._gains, rigid=1.0, outputs=self._looks)

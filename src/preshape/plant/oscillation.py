@@ -21,6 +21,7 @@ __all__ = [
     "check_stable",
     "distinct_modes",
     "mode_of",
+    "moved_poles",
     "oscillation",
     "sampled_oscillation",
     "upper_poles",
@@ -131,6 +132,27 @@ def sampled_oscillation(transition: Real, accuracy: float, dt: float) -> Oscilla
     kept = (np.abs(poles) > FORGOTTEN) & ~alternating
     continuous = np.asarray(np.log(poles[kept]) / dt, dtype=complex)
     return Oscillation(continuous, found.right[:, kept], found.left[:, kept], found.zeros)
+
+
+def moved_poles(a: Real, found: Oscillation, old: Modes, new: Modes) -> Real:
+    """A with the oscillating pairs elsewhere and all vectors where they are: their shapes, and the zeros, stay.
+
+    Parameters
+    ----------
+    a : ndarray, shape (state, state)
+        A.
+    found : Oscillation
+        Of it.
+    old, new : Modes
+        What oscillates in it, and what is to oscillate instead, in the same order.
+    """
+    moved = a.astype(complex)
+    for k in upper_poles(found.poles):
+        pole = found.poles[k]
+        nearest = int(np.argmin([abs(mode.pole - pole) for mode in old]))
+        change = (new[nearest].pole - pole) * np.outer(found.right[:, k], found.left[:, k].conj())
+        moved += change + change.conj()
+    return np.asarray(moved.real)
 
 
 def upper_poles(poles: Complex) -> NDArray[np.intp]:

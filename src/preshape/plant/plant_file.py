@@ -8,12 +8,13 @@ from __future__ import annotations
 import os
 import stat
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
+from preshape.checks import not_negative, whole_number
 from preshape.errors import InputError
 from preshape.plant.exact import Output
 from preshape.plant.flexible_structure import FlexibleStructure
@@ -24,7 +25,7 @@ from preshape.plant.protocol import SimulatedPlant
 from preshape.plant.shuttle_arm import ShuttleArm
 from preshape.plant.state_space import LinearPlant
 
-__all__ = ["BUILT_IN", "PLANT_SCHEMA", "load_plant"]
+__all__ = ["BUILT_IN", "PLANT_SCHEMA", "load_plant", "plant_of", "read_plant_data"]
 
 PLANT_SCHEMA = "preshape/plant/1"
 
@@ -128,17 +129,46 @@ def load_plant(plant: str | os.PathLike[str]) -> SimulatedPlant:
     """
     if (name := str(plant)) in BUILT_IN:
         return BUILT_IN[name]()
-    source = Path(plant)
-    data = _data(source)
+    try:
+        return plant_of(read_plant_data(plant))
+    except InputError as error:
+        raise InputError(str(error) if str(plant) in str(error) else f"{plant}: {error}") from None
+
+
+def plant_of(data: Any, added_mass: Mapping[int, float] | None = None) -> SimulatedPlant:
+    """The plant that a plant file's data describe.
+
+    Parameters
+    ----------
+    data : mapping
+        As :func:`read_plant_data` gives them.
+    added_mass : mapping of int to float, optional
+        What is put on coordinates of matrices [kg], by their numbers from 0: a payload.
+
+    Raises
+    ------
+    InputError
+        If they do not describe a plant, or mass is added where there are no matrices.
+
+    Examples
+    --------
+    >>> data = read_plant_data("examples/data/machine.toml")
+    >>> [round(plant_of(data, {2: added}).modes()[0].frequency, 2) for added in (0.0, 0.5)]
+    [8.68, 8.12]
+    """
     try:
         given = msgspec.convert(data, _File)
-        if given.schema != PLANT_SCHEMA:
-            raise InputError(f"its schema is {given.schema!r}: write {PLANT_SCHEMA!r}, the one this version reads.")
-        return _plant(given)
     except msgspec.ValidationError as error:
-        raise InputError(f"{source}: not a {PLANT_SCHEMA} file: {error}.") from None
-    except InputError as error:
-        raise InputError(f"{source}: {error}") from None
+        raise InputError(f"not a {PLANT_SCHEMA} file: {error}.") from None
+    if given.schema != PLANT_SCHEMA:
+        raise InputError(f"its schema is {given.schema!r}: write {PLANT_SCHEMA!r}, the one this version reads.")
+    for coordinate, mass in (added_mass or {}).items():
+        if given.matrices is None:
+            raise InputError("it has no matrices, so no mass can be put on a coordinate: give matrices.")
+        at = whole_number("the payload's coordinate", coordinate, 0, len(given.matrices.mass) - 1)
+        if len(given.matrices.mass[at]) > at:  # a row that is too short is refused below
+            given.matrices.mass[at][at] += not_negative("the payload", mass, "kg")
+    return _plant(given)
 
 
 def _plant(given: _File) -> SimulatedPlant:
@@ -195,8 +225,9 @@ def _apart(kind: str, names: list[str]) -> None:
         raise InputError(f"two {kind}s are named {double[0]!r}: give each a name of its own.")
 
 
-def _data(source: Path) -> Any:
-    """What a JSON or TOML file of limited size holds."""
+def read_plant_data(plant: str | os.PathLike[str]) -> Any:
+    """What a plant file, JSON or TOML of limited size, holds; InputError when it cannot be read."""
+    source = Path(plant)
     try:
         status = source.stat()
         if not stat.S_ISREG(status.st_mode):

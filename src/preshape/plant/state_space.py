@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from preshape.checks import positive
 from preshape.errors import InputError
-from preshape.mode import Modes
+from preshape.mode import Modes, ModesLike
 from preshape.plant.diverged import Diverged
 from preshape.plant.matrix_checks import system_matrices
 from preshape.plant.oscillation import (
@@ -19,6 +19,7 @@ from preshape.plant.oscillation import (
     check_stable,
     distinct_modes,
     mode_of,
+    moved_poles,
     oscillation,
     sampled_oscillation,
     upper_poles,
@@ -161,6 +162,14 @@ class LinearPlant:
         poles = self.poles
         check_stable(poles, self._accuracy * float(np.abs(poles).max(initial=0.0)))
         return distinct_modes(mode_of(complex(pole)) for pole in poles[upper_poles(poles)])
+
+    def with_modes(self, modes: ModesLike) -> LinearPlant:
+        """The plant with other modes, in the order of :meth:`modes`; InputError for a sampled one, or another count."""
+        wanted, old, (a, b, c) = Modes(modes), self.modes(), self._balanced
+        if len(wanted) != len(old) or self.sample_time is not None:
+            raise InputError(f"{len(wanted)} mode(s) are given: give {len(old)}, as many as it has, and it continuous.")
+        moved = moved_poles(a, self._oscillation, old, wanted)
+        return LinearPlant(moved, b, c, self.D, inputs=self._inputs, outputs=self._outputs)
 
     def participation(self, output: str | None = None, input: str | None = None) -> NDArray[np.float64]:
         """How strongly each mode shows in an output after an impulse at an input.

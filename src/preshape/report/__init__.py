@@ -3,6 +3,8 @@
 from preshape.report.calibration import FREQUENCY_ERROR, Calibration, Candidate, MeasuredFile, SimulatedMove
 from preshape.report.calibration_document import calibration_document, klipper_sentence
 from preshape.report.calibration_figure import calibration_figure
+from preshape.report.campaign import CampaignPanel, CampaignSummary, Cloud, Curves, Field
+from preshape.report.campaign_figure import campaign_figure
 from preshape.report.comparison import Comparison, Contender, Kind, LeftOut
 from preshape.report.comparison_figure import comparison_figure
 from preshape.report.comparison_table import (
@@ -24,11 +26,18 @@ from preshape.report.record_file import read_record, unpacked
 from preshape.report.robustness import ModeRobustness, mode_robustness, robustness_table
 from preshape.report.robustness_figure import robustness_figure
 from preshape.report.sections import Export
-from preshape.report.shaped_simulation import OutputMotion, ShapedSimulation
+from preshape.report.shaped_simulation import ROUNDING, OutputMotion, ShapedSimulation
 from preshape.report.simulation_figure import simulation_figure
 from preshape.report.stabilisation_figure import stabilisation_figure
-from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table, pick_table
-from preshape.report.trade_off import TradeOff, TradePoint, gain_sentences
+from preshape.report.tables import (
+    TextTable,
+    candidate_table,
+    exclusion_sentence,
+    limit_sentence,
+    mode_table,
+    pick_table,
+)
+from preshape.report.trade_off import TradeOff, TradePoint, gain_sentences, robustness_sentence
 from preshape.report.trade_off_figure import trade_off_figure
 from preshape.report.verification import (
     AS_PREDICTED,
@@ -48,15 +57,20 @@ __all__ = [
     "AS_PREDICTED",
     "Calibration",
     "CalibrationJob",
+    "CampaignPanel",
+    "CampaignSummary",
     "Candidate",
+    "Cloud",
     "Comparison",
     "Contender",
+    "Curves",
     "DOUBTFUL",
     "DesignJob",
     "Document",
     "Estimate",
     "Export",
     "FREQUENCY_ERROR",
+    "Field",
     "GivenJob",
     "Heading",
     "Job",
@@ -72,6 +86,7 @@ __all__ = [
     "Paragraph",
     "Part",
     "Picture",
+    "ROUNDING",
     "Record",
     "RecordedFile",
     "Ringing",
@@ -88,6 +103,8 @@ __all__ = [
     "as_svg",
     "calibration_document",
     "calibration_figure",
+    "calibration_page",
+    "campaign_figure",
     "can_make_pdf",
     "candidate_table",
     "comparison_figure",
@@ -101,17 +118,19 @@ __all__ = [
     "gain_sentences",
     "klipper_sentence",
     "length_unit",
+    "limit_sentence",
     "mode_robustness",
     "mode_table",
     "move_figure",
     "move_sentence",
     "pick_table",
     "printable",
-    "residual_table",
     "read_record",
     "report_bytes",
     "report_format",
+    "residual_table",
     "robustness_figure",
+    "robustness_sentence",
     "robustness_table",
     "simulation_figure",
     "stabilisation_figure",

@@ -12,14 +12,10 @@ from preshape.export.klipper import KlipperFit, KlipperScore
 from preshape.identify import Identification, IdentifiedMode, PrintedSpectrum
 from preshape.mode import Modes
 from preshape.report.record import CalibrationJob, RecordedFile
-from preshape.report.trade_off import TradeOff
+from preshape.report.trade_off import FREQUENCY_ERROR, TradeOff
 from preshape.shaper import Shaper
 
 __all__ = ["FREQUENCY_ERROR", "Calibration", "Candidate", "MeasuredFile", "SimulatedMove"]
-
-FREQUENCY_ERROR = 0.05
-"""Relative error of the frequencies that a shaper must bear: modes move by some percent with position, load and
-temperature, so a shaper that is right for the measurement alone is not one to trust."""
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,15 @@ from preshape.report.sections import (
     provenance_parts,
     robustness_parts,
 )
-from preshape.report.tables import TextTable, candidate_table, exclusion_sentence, mode_table, pick_table
-from preshape.report.trade_off import gain_sentences
+from preshape.report.tables import (
+    TextTable,
+    candidate_table,
+    exclusion_sentence,
+    limit_sentence,
+    mode_table,
+    pick_table,
+)
+from preshape.report.trade_off import gain_sentences, robustness_sentence
 from preshape.report.trade_off_figure import trade_off_figure
 
 __all__ = ["calibration_document", "klipper_sentence"]
@@ -104,13 +111,16 @@ def _trade_off(calibration: Calibration, drawn: str | None) -> list[Part]:
     trade = calibration.trade_off
     if trade is None:
         return []
-    gains = gain_sentences(trade)
-    return [
+    gains, off = gain_sentences(trade), robustness_sentence(trade)
+    kinds: list[RowKind] = ["fragile" if one in trade.fragile else "" for one in (trade.stock, *trade.picks)]
+    parts: list[Part] = [
         Heading("What smoothing buys, by Klipper's measures"),
         Picture(as_svg(trade_off_figure(trade)) if drawn is None else drawn, " ".join(gains)),
+        Table(pick_table(trade), tuple(kinds)),
+        Paragraph(limit_sentence(trade, calibration.maximum_impulses)),
         *[Paragraph(sentence) for sentence in gains],
-        Table(pick_table(trade)),
     ]
+    return [*parts, Paragraph(off, "warning" if trade.fragile else "plain")] if off else parts
 
 
 def _in_words(calibration: Calibration) -> str:

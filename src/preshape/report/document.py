@@ -16,7 +16,7 @@ __all__ = ["Document", "Heading", "Paragraph", "Part", "Picture", "RowKind", "Ta
 
 Role: TypeAlias = Literal["plain", "lead", "label", "warning"]
 
-RowKind: TypeAlias = Literal["", "chosen", "excluded"]
+RowKind: TypeAlias = Literal["", "chosen", "excluded", "fragile"]
 
 
 UNPRINTABLE = ("Cc", "Cf", "Cs")

@@ -30,6 +30,7 @@ th.left, td.left { text-align: left; }
 th { font-weight: 600; color: var(--soft); vertical-align: bottom; }
 tr.chosen td { font-weight: 700; color: var(--accent); }
 tr.excluded td { color: #767676; }
+tr.fragile td:last-child { color: var(--warn); font-weight: 700; }
 figure { margin: .5rem 0; overflow-x: auto; }
 svg { width: 100%; height: auto; }
 pre { background: #f5f5f5; padding: .4rem .7rem; margin: .2rem 0 .6rem; overflow-x: auto; font-size: .85em;

@@ -49,6 +49,7 @@ class CalibrationJob(_Strict, frozen=True, tag="calibrate", tag_field="job"):
     damping: float | None = None
     sample_rate: float | None = None
     part: str | None = None
+    excitation: str | None = None
     mixed: bool = False
     axis: str | None = None
 

@@ -12,7 +12,10 @@ from preshape.mode import Modes
 from preshape.plant import Simulation
 from preshape.shaper import Shaper
 
-__all__ = ["OutputMotion", "ShapedSimulation"]
+__all__ = ["ROUNDING", "OutputMotion", "ShapedSimulation"]
+
+ROUNDING = 1e-12
+"""A vibration below this part of the largest value of an output is rounding: a ratio of two such says nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +90,6 @@ class ShapedSimulation:
         return float(self.unshaped.times[1] - self.unshaped.times[0])
 
     def remaining(self, output: str) -> float:
-        """The shaped residual as a part of the unshaped one [-]; NaN where neither leaves any."""
+        """The shaped residual as a part of the unshaped one [-]; NaN where that one leaves none but rounding."""
         before, after = self.motions[output]
-        return after.residual / before.residual if before.residual else float("nan")
+        return after.residual / before.residual if before.residual > ROUNDING * before.peak else float("nan")

@@ -8,7 +8,16 @@ from preshape.report.calibration import Calibration, Candidate
 from preshape.report.trade_off import TradeOff
 from preshape.shaper import Shaper
 
-__all__ = ["TextTable", "TimeUnit", "candidate_table", "exclusion_sentence", "mode_table", "pick_table", "time_unit"]
+__all__ = [
+    "TextTable",
+    "TimeUnit",
+    "candidate_table",
+    "exclusion_sentence",
+    "limit_sentence",
+    "mode_table",
+    "pick_table",
+    "time_unit",
+]
 
 CHOSEN, EXCLUDED = ">", "x"
 """Marks before a candidate's name."""
@@ -48,6 +57,17 @@ def exclusion_sentence(calibration: Calibration) -> str:
     if not any(candidate.excluded for candidate in calibration.candidates):
         return ""
     return f"{EXCLUDED}: more than the {calibration.maximum_impulses} impulses that the controller holds."
+
+
+def limit_sentence(trade: TradeOff, asked: int | None) -> str:
+    """How many impulses the picks have at most, and why so many; `asked` is what the user said."""
+    if asked is None:
+        why = "what every firmware that takes impulses holds; --max-impulses asks for another number"
+    elif asked == trade.impulses:
+        why = "as was asked"
+    else:
+        why = f"not {asked}: more are not looked for, as no known firmware holds them"
+    return f"The picks have at most {trade.impulses} impulses: {why}."
 
 
 def mode_table(calibration: Calibration) -> TextTable:
@@ -98,11 +118,11 @@ def pick_table(trade: TradeOff) -> TextTable:
         ("Klipper", "[%]"),
         ("smooth-", "ing [mm]"),
         ("max_accel", "[mm/s²]"),
-        ("vibration left", "5 % off [%]"),
+        ("left when", "5 % off [%]"),
     )
     rows = tuple(
         (
-            f"stock: {one.name}" if one is trade.stock else one.name,
+            f"stock: {one.name.removeprefix('Klipper ')}" if one is trade.stock else one.name,
             f"{len(one.shaper)}",
             f"{unit.per_second * one.shaper.duration:.{unit.decimals}f}",
             f"{100.0 * one.score.remaining_vibration:.2f}",

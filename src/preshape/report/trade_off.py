@@ -7,10 +7,17 @@ from dataclasses import dataclass
 from preshape.export.klipper import KlipperScore
 from preshape.shaper import Shaper
 
-__all__ = ["TradeOff", "TradePoint", "gain_sentences"]
+__all__ = ["FREQUENCY_ERROR", "TradeOff", "TradePoint", "gain_sentences", "robustness_sentence"]
+
+FREQUENCY_ERROR = 0.05
+"""Relative error of the frequencies that a shaper must bear: modes move by some percent with position, load and
+temperature, so a shaper that is right for the measurement alone is not one to trust."""
 
 NOTHING = 0.005
 """A gain in acceleration below this fraction is called none, and so is one in vibration below this fraction of it."""
+
+CLEARLY = 0.1
+"""Amplitudes left that differ by less than this fraction are called alike."""
 
 UNSEEN = 5e-5
 """Differences of remaining vibration below this [-] are called none."""
@@ -79,6 +86,11 @@ class TradeOff:
         return tuple(pick for pick in (self.performance, self.quality, self.improved) if pick is not None)
 
     @property
+    def fragile(self) -> tuple[TradePoint, ...]:
+        """Picks that leave clearly more than stock when the frequencies are off."""
+        return tuple(pick for pick in self.picks if pick.left > (1.0 + CLEARLY) * self.stock.left)
+
+    @property
     def acceleration_gain(self) -> float:
         """How much higher max_accel is with neither more vibration nor more smoothing than stock, relatively; 0: no."""
         if self.improved is None:
@@ -92,42 +104,62 @@ class TradeOff:
 
 
 def gain_sentences(trade: TradeOff) -> tuple[str, ...]:
-    """What the picks gain over the stock choice, also when it is nothing."""
+    """What each pick is, and what it gains over the stock choice, also when that is nothing."""
     stock = trade.stock
     sentences = [
         f"Stock is {stock.name}: {_percent(_vibration(stock))} of the vibration by Klipper's measure, smoothing "
         f"{stock.score.smoothing:.3f} mm, max_accel {stock.score.maximum_acceleration:.0f} mm/s²."
     ]
-    for pick, aim in (
-        (trade.performance, f"performance (highest max_accel with at most {_percent(trade.allowed)})"),
-        (trade.quality, "quality (least vibration at no more smoothing than stock)"),
-        (trade.improved, "improved (highest max_accel with no more of either than stock)"),
+    for pick, name, aim in (
+        (
+            trade.performance,
+            "performance",
+            f"the highest max_accel that leaves at most {_percent(trade.allowed)} of the vibration",
+        ),
+        (trade.quality, "quality", "the least vibration at no more smoothing than stock"),
+        (trade.improved, "improved", "the highest max_accel with no more vibration and no more smoothing than stock"),
     ):
         if pick is None:
-            sentences.append(f"No {aim} within {trade.impulses} impulses.")
+            sentences.append(f"No {name} pick ({aim}) within {trade.impulses} impulses.")
         else:
-            what = f"{_percent(_vibration(pick))}, max_accel {pick.score.maximum_acceleration:.0f} mm/s²"
-            sentences.append(f"{aim[0].upper()}{aim[1:]}: {len(pick.shaper)} impulses, {what}: {_gain(pick, trade)}.")
-    if trade.picks:
-        off = ", ".join(f"{pick.name} {100.0 * pick.left:.0f} %" for pick in trade.picks)
-        sentences.append(
-            f"With all frequencies up to 5 % off, the amplitude left is: {off}, stock {100.0 * stock.left:.0f} %."
-        )
+            sentences.append(f"{name.capitalize()}, {aim}: {_gain(pick, trade)}.")
     return tuple(sentences)
 
 
+def robustness_sentence(trade: TradeOff) -> str:
+    """What the picks leave when the machine is not quite as measured, which Klipper's measure does not ask; empty
+    without picks."""
+    if not trade.picks:
+        return ""
+    off = f"With all frequencies up to {100.0 * FREQUENCY_ERROR:.0f} % off"
+    if not trade.fragile:
+        return f"{off}, no pick leaves more of the amplitude than stock, {_whole(trade.stock)}."
+    left = ", ".join(f"{pick.name} {_whole(pick)}" for pick in trade.fragile)
+    return (
+        f"{off}, more of the amplitude is left than the {_whole(trade.stock)} of stock: {left}. Klipper's measure does "
+        "not see this; take such a pick only where the frequencies stay as they were measured."
+    )
+
+
 def _gain(pick: TradePoint, trade: TradeOff) -> str:
-    """Against the stock choice, in what the pick is for."""
+    """Against the stock choice: max_accel, and for the quality pick the vibration first."""
     faster = pick.score.maximum_acceleration / trade.stock.score.maximum_acceleration - 1.0
-    before, after = _vibration(trade.stock), _vibration(pick)
-    if pick is trade.quality:
-        fewer = before - after
-        if fewer <= max(UNSEEN, NOTHING * before):
-            return "no less than stock"
-        return f"{100.0 * fewer:.2g} points less than stock"
-    if abs(faster) < NOTHING:
-        return "nothing gained over stock"
-    return f"max_accel {100.0 * faster:+.1f} % over stock"
+    speed = f"max_accel {100.0 * faster:+.1f} % over stock" if abs(faster) >= NOTHING else ""
+    if pick is not trade.quality:
+        return speed or "nothing gained over stock"
+    before = _vibration(trade.stock)
+    fewer = before - _vibration(pick)
+    if before <= UNSEEN:
+        still = "stock leaves none to take away"
+    elif fewer <= max(UNSEEN, NOTHING * before):
+        still = "nothing gained over stock"
+    else:
+        still = f"{100.0 * fewer:.2g} % of the vibration less than stock"
+    return "; ".join(part for part in (still, speed) if part)
+
+
+def _whole(point: TradePoint) -> str:
+    return f"{100.0 * point.left:.0f} %"
 
 
 def _vibration(point: TradePoint) -> float:

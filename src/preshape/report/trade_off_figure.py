@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 __all__ = ["trade_off_figure"]
 
+TRADE_OFF_TITLE = "What smoothing buys"
+
 WIDER = (0.8, 1.25)
 """The axis of smoothing reaches from this part of the curve's beginning to this part of its end or the stock choice."""
 
@@ -75,7 +77,7 @@ def trade_off_figure(trade: TradeOff) -> Figure:
         axes,
         "smoothing [mm] at 5000 mm/s²",
         "vibration left, by Klipper's measure [%]",
-        f"What smoothing buys; at no more vibration and smoothing than stock: {gain}",
+        f"{TRADE_OFF_TITLE}; at no more vibration and smoothing than stock: {gain}",
     )
     axes.legend(fontsize=8.5, loc="upper right", frameon=True, framealpha=0.9, edgecolor="white")
     label_points(axes, _names(shown, high - low), avoid=list(zip(*_places(drawn), strict=True)))

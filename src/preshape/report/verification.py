@@ -14,10 +14,15 @@ from preshape.identify import IdentifiedMode
 __all__ = ["AS_PREDICTED", "DOUBTFUL", "LESS", "MORE", "NOISE", "Estimate", "ModeVerdict", "Ringing", "Verification"]
 
 AS_PREDICTED = "as predicted"
+"""The intervals of the measured and of the predicted ratio overlap."""
 LESS = "less than predicted"
+"""The shaper takes away less than predicted: the measured ratio lies above the predicted one."""
 MORE = "more than predicted"
+"""It takes away more: the measured ratio lies below."""
 NOISE = "not distinguishable from noise"
+"""The mode rings too little in a recording for a ratio."""
 DOUBTFUL = "stop in doubt"
+"""When the move ended is not clear enough for a ratio."""
 
 
 @dataclass(frozen=True)

@@ -45,11 +45,13 @@ class Schedule:
         Of the shapers, as for :func:`preshape.design.direct`.
     outside : {"refuse", "hold"}
         What happens to a configuration outside the table: it is refused, or the nearest one in the table is taken.
+    shapers : mapping of float or tuple of float to Shaper, optional
+        Of rows that are designed already, as those of :func:`preshape.stream.load_schedule`.
 
     Raises
     ------
     InputError
-        If the table is empty, no grid, or its rows do not have equally many modes.
+        If the table is empty, no grid, or its rows do not have equally many modes; or a shaper is not that of its row.
 
     Examples
     --------
@@ -60,7 +62,14 @@ class Schedule:
     True
     """
 
-    def __init__(self, table: Table, order: int = 1, *, outside: str = "refuse") -> None:
+    def __init__(
+        self,
+        table: Table,
+        order: int = 1,
+        *,
+        outside: str = "refuse",
+        shapers: Mapping[float, Shaper] | Mapping[tuple[float, ...], Shaper] | None = None,
+    ) -> None:
         if outside not in ("refuse", "hold"):
             raise InputError(f'outside is {outside!r}: it is "refuse" or "hold".')
         if not isinstance(table, Mapping) or not table:
@@ -82,6 +91,8 @@ class Schedule:
         values = [[(math.log(mode.frequency), mode.damping) for mode in modes] for modes in ordered]
         self._values = np.array(values).reshape(*shape, len(rows[first]), 2)
         self._designed: dict[tuple[int, ...], Shaper] = {}
+        for at, shaper in (shapers or {}).items():
+            self._take(_numbers(at), shaper, rows)
 
     def modes(self, configuration: ArrayLike) -> Modes:
         """The modes at a configuration.
@@ -120,6 +131,14 @@ class Schedule:
             self._designed[nearest] = direct(self.modes(at), self._order)
         row = self._designed[nearest]
         return direct(wanted, self._order, near=None if row.design.certificate is None else row)
+
+    def _take(self, key: tuple[float, ...], shaper: Shaper, rows: Mapping[tuple[float, ...], Modes]) -> None:
+        design = shaper.design
+        if key not in rows or design.family != "direct" or design.modes != rows[key]:
+            raise InputError(f"the shaper at {_words(key)} is not the direct one for the table's modes there.")
+        if design.settings.get("order") != self._order:
+            raise InputError(f"the shaper at {_words(key)} has another order than the schedule's, {self._order}.")
+        self._designed[tuple(int(np.searchsorted(a, value)) for a, value in zip(self._axes, key, strict=True))] = shaper
 
     def _point(self, configuration: ArrayLike) -> tuple[float, ...]:
         point = _numbers(configuration)

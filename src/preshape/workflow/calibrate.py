@@ -40,6 +40,7 @@ def calibrate(
     damping: float | None = None,
     sample_rate: float | None = None,
     part: str | None = None,
+    excitation: str | None = None,
     mixed: bool = False,
     axis: str | None = None,
 ) -> Calibration:
@@ -60,6 +61,8 @@ def calibrate(
         Samples per second [Hz], for tables without a time column.
     part : str, optional
         Name of the measurement, or its beginning, in files that hold several.
+    excitation : str, optional
+        Name of the column or array that holds the input (a force, a command) beside the outputs.
     axis : str, optional
         "x", "y" or "z": which axis the texts for firmwares set; x and y alike unless given.
     mixed : bool
@@ -92,7 +95,7 @@ def calibrate(
     measurements = [identify.read(path, sample_rate=sample_rate, part=part) for path in paths]
     inputs = recorded_files(paths)
     names = [one.name for one in inputs]
-    measured = tuple(_measured(name, one, damping) for name, one in zip(names, measurements, strict=True))
+    measured = tuple(_measured(name, one, damping, excitation) for name, one in zip(names, measurements, strict=True))
     modes = identify.merged_modes([file.identification for file in measured])
     spectra = klipper.as_spectra([(file.scored.frequencies, file.scored.power) for file in measured])
     advice = klipper.recommend(spectra) if _klipper_applies(measured) else None
@@ -150,6 +153,7 @@ def calibrate(
             damping=damping,
             sample_rate=sample_rate,
             part=part,
+            excitation=excitation,
             mixed=mixed,
             axis=axis,
         ),
@@ -166,6 +170,8 @@ def _klipper_applies(files: tuple[MeasuredFile, ...]) -> bool:
     return printer or (min(loudest) >= KLIPPER_RANGE[0] and max(loudest) <= KLIPPER_RANGE[1])
 
 
-def _measured(name: str, measurement: identify.Measurement, damping: float | None) -> MeasuredFile:
-    identification = identify.find_modes(measurement, damping=damping)
+def _measured(
+    name: str, measurement: identify.Measurement, damping: float | None, excitation: str | None
+) -> MeasuredFile:
+    identification = identify.find_modes(measurement, damping=damping, excitation=excitation)
     return MeasuredFile(name, measurement.format, identification, scored_spectrum(measurement, identification))

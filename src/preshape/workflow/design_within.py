@@ -10,7 +10,7 @@ from typing import TypeAlias, cast
 from preshape import identify
 from preshape.checks import positive, tolerance_of, whole_number
 from preshape.errors import InputError
-from preshape.export import TARGETS, Limits, SettingsTarget, klipper
+from preshape.export import TARGETS, Limits, klipper
 from preshape.export.klipper import Room
 from preshape.export.klipper.spectra import SpectraLike
 from preshape.mode import Modes
@@ -145,15 +145,9 @@ def _held(limits: str | Limits | None, version: str | None) -> Limits:
     if limits not in TARGETS:
         raise InputError(f"target {limits!r} is not known: it is {', '.join(TARGETS)}.")
     target = TARGETS[limits]
-    if version is not None and version not in target.versions:
-        raise InputError(f"version {version!r} is not known for target {limits}: it is {' or '.join(target.versions)}.")
-    if not isinstance(target, SettingsTarget):
-        return target.limits
-    held = target.limits_of(version or target.versions[0])
+    held = target.limits_of(target.version_of(version))
     if held.taps is None:
-        takers = [
-            name for name, one in TARGETS.items() if not isinstance(one, SettingsTarget) or one.limits.taps is not None
-        ]
+        takers = [name for name, one in TARGETS.items() if one.limits.taps is not None]
         raise InputError(
             f"target {limits} takes families and no impulses, so there is nothing to design: it is one of "
             f"{', '.join(takers)}."

@@ -8,15 +8,16 @@ from pathlib import Path
 
 from preshape import identify
 from preshape.errors import InputError
-from preshape.export import TARGETS, SettingsTarget, klipper
+from preshape.export import TARGETS, klipper
 from preshape.shaper import Shaper
 from preshape.workflow.remaining import lines_to_still, remaining_amplitude
+from preshape.workflow.save_export import MEMORY
 from preshape.workflow.spectra import scored_spectrum
 
 __all__ = ["SpectrumLeft", "executed_shaper", "left_of_spectrum"]
 
-LARGEST_FILE = 1_000_000
-"""Bytes of a file with settings."""
+MOST_FILES, LARGEST = 100, 50_000_000
+"""Files of an export, and bytes of them all; what counts among them has limits of its own."""
 
 
 @dataclass(frozen=True)
@@ -42,46 +43,55 @@ class SpectrumLeft:
 def executed_shaper(
     path: str | os.PathLike[str], target: str, *, version: str | None = None, axis: str | None = None
 ) -> Shaper:
-    """The impulses that a controller executes with the settings in a file.
+    """The impulses that a controller executes with the settings or the export in a file.
 
     Parameters
     ----------
     path : path
-        ``printer.cfg``, a G-code file, or the part of it that holds the settings.
+        ``printer.cfg``, a G-code file, or the part of it that holds the settings; or an export, its folder where a
+        target such as "c" has several files.
     target : str
-        Whose settings: a target of :data:`preshape.export.TARGETS` that takes settings, such as "klipper" or "rrf".
+        Whose: one of :data:`preshape.export.TARGETS`, such as "klipper" or "rrf".
     version : str, optional
-        Of its firmware, one of the target's ``versions``; by default the first.
+        Of it, one of the target's ``versions``; by default what an export says of itself, otherwise the first.
     axis : str, optional
         "x", "y" or "z"; needed where the axes differ.
 
     Returns
     -------
     Shaper
-        Its modes are what is set: a frequency and a damping ratio.
+        Of settings, its modes are what is set: a frequency and a damping ratio.
 
     Raises
     ------
     InputError
-        If the file cannot be read, holds no such settings, or the controller would refuse them.
+        If nothing can be read, there are no such settings or taps, or the controller would refuse them.
     """
-    known = {name: one for name, one in TARGETS.items() if isinstance(one, SettingsTarget)}
-    if target not in known:
-        raise InputError(f"{target!r} takes no settings that could be looked at: it is one of {', '.join(known)}.")
-    chosen = known[target]
-    if version is not None and version not in chosen.versions:
-        raise InputError(f"version {version!r} is not known for {target}: it is {' or '.join(chosen.versions)}.")
+    if target not in TARGETS:
+        raise InputError(f"target {target!r} is not known: it is {', '.join(TARGETS)}.")
     source = Path(path)
+    files = _files(source)
     try:
-        if source.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{source} is larger than a megabyte: give the part of it that holds the settings.")
-        text = source.read_text(encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise InputError(f"cannot read {source}: {error.strerror or error}.") from None
-    try:
-        return chosen.execute(text, version or chosen.versions[0], axis)
+        return TARGETS[target].execute(files, version, axis)
     except InputError as error:
         raise InputError(f"{source}: {error}") from None
+
+
+def _files(source: Path) -> dict[str, bytes]:
+    """The file, or the files in a folder but for the list that save_export keeps of them, by name."""
+    try:
+        paths = (
+            sorted(one for one in source.iterdir() if one.is_file() and one.name != MEMORY)
+            if source.is_dir()
+            else [source]
+        )
+        if len(paths) > MOST_FILES or sum(one.stat().st_size for one in paths) > LARGEST:
+            raise InputError(
+                f"{source} holds more than {MOST_FILES} files or {LARGEST // 1_000_000} MB: give those of one export."
+            )
+        return {one.name: one.read_bytes() for one in paths}
+    except OSError as error:
+        raise InputError(f"cannot read {source}: {error.strerror or error}.") from None
 
 
 def left_of_spectrum(shaper: Shaper, path: str | os.PathLike[str], damping: float | None = None) -> SpectrumLeft:

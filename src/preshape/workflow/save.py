@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from preshape.errors import InputError
-from preshape.export.settings_target import MARK
 from preshape.files import write_atomically
 from preshape.report import (
     Calibration,
@@ -23,12 +22,17 @@ from preshape.report import (
     trade_off_figure,
 )
 from preshape.shaper import Shaper
+from preshape.workflow.outdated import set_aside
 from preshape.workflow.record import new_record
 
 __all__ = ["SavedCalibration", "make_folders", "save_calibration", "save_design"]
 
 SETTINGS = "settings"
 """The folder below which each firmware has its own."""
+
+PDF = "report.pdf"
+TRADE_OFF = "trade_off.svg"
+PICKS = ("performance", "quality", "improved")
 
 
 @dataclass(frozen=True)
@@ -97,16 +101,18 @@ def save_calibration(
     page, sheets = as_html(report), as_pdf(report) if (can_make_pdf() if pdf is None else pdf) else None
     settings = {target / SETTINGS / name: content for text in calibration.texts for name, content in text.files.items()}
     make_folders([target, *sorted({path.parent for path in settings})])
-    _remove_outdated(target / SETTINGS / text.target for text in calibration.texts if not text.fits)
-    return SavedCalibration(
+    saved = SavedCalibration(
         shaper=calibration.shaper.save(target / "shaper.json"),
         figure=write_atomically(target / "calibration.svg", figure),
         report=write_atomically(target / "report.html", page),
-        pdf=None if sheets is None else write_atomically(target / "report.pdf", sheets),
-        trade_off=None if second is None else write_atomically(target / "trade_off.svg", second),
+        pdf=None if sheets is None else write_atomically(target / PDF, sheets),
+        trade_off=None if second is None else write_atomically(target / TRADE_OFF, second),
         picks=() if trade is None else tuple(pick.shaper.save(target / f"{pick.name}.json") for pick in trade.picks),
         settings=tuple(write_atomically(path, content) for path, content in settings.items()),
     )
+    names = (PDF, TRADE_OFF, *(f"{name}.json" for name in PICKS))
+    set_aside(target, names, target / SETTINGS, (saved.pdf, saved.trade_off, *saved.picks, *saved.settings))
+    return saved
 
 
 def save_design(shaper: Shaper, report: Document | None, folder: str | os.PathLike[str]) -> None:
@@ -122,7 +128,7 @@ def save_design(shaper: Shaper, report: Document | None, folder: str | os.PathLi
     if report is not None:
         pages["report.html"] = as_html(report).encode()
         if can_make_pdf():
-            pages["report.pdf"] = as_pdf(report)
+            pages[PDF] = as_pdf(report)
     make_folders([target])
     shaper.save(target / "shaper.json")
     for name, content in pages.items():
@@ -138,14 +144,3 @@ def make_folders(folders: Iterable[Path]) -> None:
             raise InputError(
                 f"cannot make the folder {folder}: {error.strerror or error}; choose another with --out."
             ) from error
-
-
-def _remove_outdated(folders: Iterable[Path]) -> None:
-    """Settings that an earlier run left for firmwares that cannot hold the shaper now: nobody should paste them."""
-    for folder in folders:
-        for path in folder.glob("*") if folder.is_dir() else ():
-            try:
-                if MARK.search(path.read_text()[:200]):
-                    path.unlink()
-            except (OSError, UnicodeDecodeError):
-                continue  # not of an export, or not ours to remove

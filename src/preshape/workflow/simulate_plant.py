@@ -14,7 +14,7 @@ from preshape.mode import Modes, ModesLike
 from preshape.plant import SimulatedPlant, Simulation, simulated
 from preshape.plant.protocol import Progress
 from preshape.plant.sampled_command import command_rows
-from preshape.report import OutputMotion, ShapedSimulation
+from preshape.report import ROUNDING, OutputMotion, ShapedSimulation
 from preshape.shaper import Shaper
 from preshape.vibration import residual_vibration
 from preshape.workflow.free_vibration import final_value, output_motion
@@ -32,6 +32,12 @@ MOST_SAMPLES = 20_000_000
 
 ON_GRID = 1e-6
 """Part of a sample by which an impulse may miss it."""
+
+UNNOTICED = (
+    "nothing moves under the unshaped command: it is over before the plant looks at it, or too small for it to see "
+    "(the joints of shuttle-arm look every 80 ms, and in steps); give a longer or larger one."
+)
+"""Note on a command that a plant with digital inputs does not notice."""
 
 WORTH_SAYING = 1e-3
 """Residual vibration [-] that comes of impulses between samples, from which on it is said."""
@@ -113,6 +119,8 @@ def simulate_plant(
     told = [None, None] if progress is None else [_half(progress, 0.0), _half(progress, 0.5)]
     runs = [simulated(plant, part, dt, tell) for part, tell in zip(commands, told, strict=True)]
     ends = [_last_change(part) for part in commands]
+    if rows.any() and all(_still(values) for values in runs[0].outputs.values()):
+        notes += (UNNOTICED,)
     return ShapedSimulation(
         unshaped=runs[0],
         shaped=runs[1],
@@ -133,13 +141,17 @@ def _motions(
     for name, values in runs[0].outputs.items():
         final = final_value(runs[0].times, values, modes)
         deviation = float(np.abs(values - final).max())
-        within = tolerance * max(deviation, np.finfo(float).tiny)
+        within = max(tolerance * deviation, ROUNDING * float(np.abs(values).max()), np.finfo(float).tiny)
         before, after = (
             output_motion(run.times, run.outputs[name], end, pushed, modes, within)
             for run, end in zip(runs, ends, strict=True)
         )
         found[name] = (before, after)
     return found
+
+
+def _still(values: NDArray[np.float64]) -> bool:
+    return float(np.ptp(values)) <= ROUNDING * float(np.abs(values).max())
 
 
 def _check_grid(shaper: Shaper, dt: float, modes: Modes) -> tuple[str, ...]:

@@ -5,20 +5,19 @@ from __future__ import annotations
 from importlib.metadata import version
 from importlib.resources import files as resources
 
+from preshape.export.arithmetic import as_kernel
 from preshape.export.c.golden import MULTIPLIER, OFFSET, START, UNIT, Golden
 from preshape.export.c_source import (
-    TAPS_ALLOWED,
     delay_rows,
     filled,
     modes_left,
-    read_shaper,
     real,
-    text_of,
+    taps_of_source,
     title,
     weight_rows,
 )
-from preshape.export.target import Files, Limits, Placed, Target
-from preshape.shaper import Shaper
+from preshape.export.read_back import MOST_TAPS, only_text
+from preshape.export.target import Files, Limits, Placed, Taps, Target
 
 __all__ = ["C"]
 
@@ -75,11 +74,11 @@ def _render(placed: Placed) -> Files:
     }
 
 
-def _parse(files: Files) -> Shaper:
+def _parse(files: Files) -> Taps:
     tables = {name: text for name, text in files.items() if not name.startswith("preshape_kernel.")}
-    header = text_of(tables, ".h")
-    source = text_of({name: text for name, text in tables.items() if not name.endswith("_selftest.c")}, ".c")
-    return read_shaper(f"{header}\n{source}", single='#error "single precision' in header)
+    header = only_text(tables, ".h")
+    source = only_text({name: text for name, text in tables.items() if not name.endswith("_selftest.c")}, ".c")
+    return taps_of_source(f"{header}\n{source}", "single" if '#error "single precision' in header else "double")
 
 
 def _flags(placed: Placed) -> str:
@@ -106,8 +105,9 @@ C = Target(
     "c",
     "C99 for any controller: kernel, table for flash, self-test",
     ("c99",),
-    Limits(taps=TAPS_ALLOWED, samples=LONGEST, precisions=("double", "single")),
+    Limits(taps=MOST_TAPS, samples=LONGEST, precisions=("double", "single")),
     _render,
     _parse,
+    as_kernel,
     _next_step,
 )

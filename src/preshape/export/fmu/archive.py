@@ -17,6 +17,15 @@ FIRST_DAY = (1980, 1, 1, 0, 0, 0)
 MOST_PACKED, MOST_ENTRIES, MOST_UNPACKED = 50_000_000, 1000, 10_000_000
 """Bytes of an FMU, entries in it, and bytes of one entry that is read."""
 
+DAMAGED = (
+    zipfile.BadZipFile,  # no zip file, or a checksum that differs
+    zlib.error,  # what was packed is not
+    EOFError,  # it ends within an entry
+    RuntimeError,  # an entry is encrypted, or (NotImplementedError) of another zip's version
+    ValueError,  # a directory that points before the file's beginning, or (UnicodeDecodeError) no text
+)
+"""What zipfile raises for files that are damaged; every one is seen when each byte of a small FMU is changed."""
+
 
 def packed(entries: Mapping[str, str | bytes]) -> bytes:
     """The zip file of some entries, sorted by name."""
@@ -46,13 +55,17 @@ def unpacked(content: bytes, *names: str) -> list[str]:
             if len(archive.infolist()) > MOST_ENTRIES:
                 raise InputError(f"the FMU has {len(archive.infolist())} entries: up to {MOST_ENTRIES} are read.")
             return [_text(archive, name) for name in names]
+    except InputError:
+        raise
     except KeyError:
         raise InputError(f"the FMU holds no {' and '.join(names)}: give one that preshape wrote.") from None
-    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, UnicodeDecodeError) as error:
-        raise InputError(f"the FMU is damaged ({error}): export it again.") from None
+    except DAMAGED as error:
+        raise InputError(f"the FMU is damaged ({error or 'it ends too early'}): export it again.") from None
 
 
 def _text(archive: zipfile.ZipFile, name: str) -> str:
+    if archive.getinfo(name).compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        raise InputError(f"{name} in the FMU is packed in a way that preshape does not use: export it again.")
     with archive.open(name) as stream:  # what the directory says of its size may be wrong
         data = stream.read(MOST_UNPACKED + 1)
     if len(data) > MOST_UNPACKED:

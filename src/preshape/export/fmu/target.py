@@ -8,16 +8,17 @@ from importlib.resources import files as resources
 from string import Template
 
 from preshape.errors import InputError
+from preshape.export.arithmetic import as_kernel
 from preshape.export.fmu.archive import names_in, packed, unpacked
 from preshape.export.fmu.binary import library
-from preshape.export.read_back import numbers_in, shaper_of_taps
-from preshape.export.target import Files, Limits, Placed, Target
-from preshape.shaper import Shaper
+from preshape.export.read_back import numbers_in, taps_in
+from preshape.export.target import Files, Limits, Placed, Taps, Target
 
 __all__ = ["FMU"]
 
 KERNEL = ("preshape_kernel.h", "preshape_kernel.c")
 WRAPPER = ("preshape_fmi3.h", "preshape_fmu.h", "preshape_fmu.c", "preshape_fmu_rest.c", "preshape_fmu_state.c")
+SINGLE = "PRESHAPE_SINGLE"
 LIMIT = {"double": "1e250", "single": "1e18"}
 
 NUMBER = r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?"
@@ -26,9 +27,9 @@ DELAYS = re.compile(r"\bDELAYS\[PRESHAPE_TABLE_TAPS\] = \{ /\* \[samples\] \*/([
 WEIGHTS = re.compile(r"\bWEIGHTS\[PRESHAPE_TABLE_TAPS\] = \{ /\* \[-\], of sum 1 \*/([^}]*)\};")
 
 
-def render(placed: Placed) -> Files:
+def _render(placed: Placed) -> Files:
     """The FMU."""
-    definitions = ("PRESHAPE_SINGLE=1",) if placed.precision == "single" else ()
+    definitions = (f"{SINGLE}=1",) if placed.precision == "single" else ()
     sources = {name: _resource("preshape.kernel", "c", name) for name in KERNEL}
     sources |= {name: _resource("preshape.export.fmu", "c", name) for name in WRAPPER}
     values: dict[str, object] = {
@@ -56,21 +57,23 @@ def render(placed: Placed) -> Files:
     return {f"{placed.name}.fmu": packed(entries)}
 
 
-def parse(files: Files) -> Shaper:
-    """The shaper in an FMU that :func:`render` wrote, from its source."""
+def _parse(files: Files) -> Taps:
+    """The taps in an FMU that :func:`_render` wrote, from its source."""
     found = [content for name, content in files.items() if name.lower().endswith(".fmu")]
     if len(found) != 1 or isinstance(found[0], str):
         raise InputError(f"{len(found)} of {len(files)} files are an FMU: give one, as bytes.")
-    table, taps = unpacked(found[0], "sources/preshape_table.h", "sources/preshape_taps.h")
+    table, taps, build = unpacked(
+        found[0], "sources/preshape_table.h", "sources/preshape_taps.h", "sources/buildDescription.xml"
+    )
     dt, delays, weights = DT.search(table), DELAYS.search(taps), WEIGHTS.search(taps)
     if dt is None or delays is None or weights is None:
         raise InputError("the table in this FMU is not preshape's: give the FMU that it wrote, unchanged.")
-    return shaper_of_taps(
-        float(dt[1]), numbers_in(delays[1].replace("u", ""), "delays"), numbers_in(weights[1], "weights")
-    )
+    precision = "single" if SINGLE in build else "double"
+    listed = numbers_in(delays[1].replace("u", ""), "delays")
+    return taps_in(float(dt[1]), listed, numbers_in(weights[1], "weights"), precision)
 
 
-def notes(files: Files) -> tuple[str, ...]:
+def _notes(files: Files) -> tuple[str, ...]:
     """That there is no binary, if there is none."""
     names = [name for content in files.values() if isinstance(content, bytes) for name in names_in(content)]
     if any(name.startswith("binaries/") for name in names):
@@ -114,8 +117,9 @@ FMU = Target(
     summary="FMI 3.0 co-simulation unit for simulation tools",
     versions=("3.0",),
     limits=Limits(taps=10_000, samples=1_000_000, precisions=("double", "single")),
-    render=render,
-    parse=parse,
+    render=_render,
+    parse=_parse,
+    run=as_kernel,
     next_step=_next_step,
-    notes=notes,
+    notes=_notes,
 )

@@ -18,6 +18,9 @@ from preshape.shaper import Shaper
 
 __all__ = ["Optimiser", "ScoredShaper", "scaled_to_smoothing"]
 
+OPTIMUM = "spectrum optimum"
+"""What the design record of such a shaper calls its family."""
+
 ROUNDING = 1e-9
 """Relative excess over a bound that is forgiven: a shaper whose amplitudes are normalised anew still meets its own."""
 
@@ -126,8 +129,8 @@ class Optimiser:
             settings["vibration"] = asked.vibration
         if math.isfinite(asked.smoothing):
             settings["smoothing"] = asked.smoothing
-        shaper = Shaper.normalised(pulses.times, pulses.amplitudes, Design("spectrum optimum"))
-        shaper = recorded(shaper, Design("spectrum optimum", self.modes, settings, "feasible"))
+        shaper = Shaper.normalised(pulses.times, pulses.amplitudes, Design(OPTIMUM))
+        shaper = recorded(shaper, Design(OPTIMUM, self.modes, settings, "feasible"))
         return ScoredShaper(shaper, score(shaper, self.spectra))
 
 

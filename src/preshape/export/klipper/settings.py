@@ -31,8 +31,8 @@ NAMES = {"mzv": ("n", "t", "tau"), "ei": ("v_tol",)}
 DEFAULT_TYPE = "mzv"
 
 
-def execute(text: str, version: str, axis: str | None = None) -> Shaper:
-    """What Klipper does with `[input_shaper]`; see :class:`preshape.export.settings_target.Execute`."""
+def _run(text: str, version: str, axis: str | None = None) -> Shaper:
+    """What Klipper does with `[input_shaper]`; see :class:`preshape.export.settings_target.Run`."""
     axes = AXES if version != "old" else AXES[:2]
     return execute_families(section_of(text, "input_shaper"), VERSIONS[version], axes, axis)
 
@@ -93,7 +93,7 @@ def family_lines(
             f"shaper_freq_{axis}: {near.frequency:.2f}",
             f"damping_ratio_{axis}: {near.damping:.4f}",
         ]
-    return Written("\n".join(lines) + "\n", (near.sentence(name, firmware),))
+    return Written("\n".join(lines) + "\n", (near.sentence(name, firmware),), excess=near.excess)
 
 
 def _word(value: float) -> str:
@@ -119,7 +119,7 @@ KLIPPER = SettingsTarget(
     tuple(VERSIONS),
     Limits(taps=None, negative=True, resolution="a family, frequency to 0.01 Hz, damping to 0.0001"),
     _write,
-    execute,
+    _run,
     ".cfg",
     "#",
     AXES,

@@ -9,9 +9,10 @@ from __future__ import annotations
 import re
 from importlib.metadata import version
 
-from preshape.export.c_source import delay_rows, filled, modes_left, read_shaper, text_of, title, weight_rows
-from preshape.export.target import Files, Limits, Placed, Target
-from preshape.shaper import Shaper
+from preshape.export.arithmetic import as_kernel
+from preshape.export.c_source import delay_rows, filled, modes_left, taps_of_source, title, weight_rows
+from preshape.export.read_back import only_text
+from preshape.export.target import Files, Limits, Placed, Taps, Target
 
 __all__ = ["LINUXCNC"]
 
@@ -68,8 +69,8 @@ def _for_2_9(text: str) -> str:
     return re.sub(r"\b(\w+)_set\((.*)\);", r"\1 = \2;", text)
 
 
-def _parse(files: Files) -> Shaper:
-    return read_shaper(text_of(files, ".comp"), single=False)
+def _parse(files: Files) -> Taps:
+    return taps_of_source(only_text(files, ".comp"), "double")
 
 
 def _next_step(placed: Placed) -> tuple[str, ...]:
@@ -86,5 +87,6 @@ LINUXCNC = Target(
     Limits(taps=MOST_TAPS, samples=LONGEST),
     _render,
     _parse,
+    as_kernel,
     _next_step,
 )

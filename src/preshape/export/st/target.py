@@ -13,17 +13,16 @@ from string import Template
 import numpy as np
 
 from preshape.errors import InputError
-from preshape.export.read_back import numbers_in, shaper_of_taps, text_of
+from preshape.export.arithmetic import as_kernel
+from preshape.export.read_back import numbers_in, only_text, taps_in
 from preshape.export.st.twincat import tcpou
-from preshape.export.target import Files, Limits, Placed, Target
-from preshape.shaper import Shaper
+from preshape.export.target import PRECISIONS, Files, Limits, Placed, Taps, Target
 
 __all__ = ["ST"]
 
 TYPES = {"double": "LREAL", "single": "REAL"}
 LARGEST = {"double": "1.0E250", "single": "1.0E18"}
 BYTES = {"double": 8, "single": 4}
-PRECISIONS = {"double": np.float64, "single": np.float32}
 
 SAMPLES = 16
 """Golden samples at the end of the self-test."""
@@ -31,10 +30,10 @@ SAMPLES = 16
 NUMBER = r"[+-]?\d+(?:\.\d+)?(?:E[+-]?\d+)?"
 DT = re.compile(rf"Sample time \[s\]: ({NUMBER})\n")
 DELAYS = re.compile(r"\bDELAYS : ARRAY\[0\.\.\d+\] OF DINT := \[ \(\* \[samples\] \*\)([^\]]*)\];")
-WEIGHTS = re.compile(r"\bWEIGHTS : ARRAY\[0\.\.\d+\] OF L?REAL := \[ \(\* \[-\], of sum 1 \*\)([^\]]*)\];")
+WEIGHTS = re.compile(r"\bWEIGHTS : ARRAY\[0\.\.\d+\] OF (L?REAL) := \[ \(\* \[-\], of sum 1 \*\)([^\]]*)\];")
 
 
-def render(placed: Placed) -> Files:
+def _render(placed: Placed) -> Files:
     """The function block and its self-test."""
     stem = "".join(word.capitalize() for word in placed.name.split("_"))
     block, program = f"FB_{stem}", f"PRG_{stem}Test"
@@ -73,15 +72,16 @@ def render(placed: Placed) -> Files:
     return {f"{name}.st": text for name, text in units.items()}
 
 
-def parse(files: Files) -> Shaper:
-    """The shaper in a function block that :func:`render` wrote."""
-    text = text_of(files, "END_VAR\nVAR CONSTANT\n    LARGEST", (".st", ".tcpou"))
+def _parse(files: Files) -> Taps:
+    """The taps in a function block that :func:`_render` wrote."""
+    text = only_text(files, ".st", ".tcpou", holding="END_VAR\nVAR CONSTANT\n    LARGEST")
     dt, delays, weights = DT.search(text), DELAYS.search(text), WEIGHTS.search(text)
     if dt is None or delays is None or weights is None:
         raise InputError(
             "this function block has no table of preshape's: give the FB_... file that it wrote, unchanged."
         )
-    return shaper_of_taps(float(dt[1]), numbers_in(delays[1], "delays"), numbers_in(weights[1], "weights"))
+    precision = "single" if weights[1] == "REAL" else "double"
+    return taps_in(float(dt[1]), numbers_in(delays[1], "delays"), numbers_in(weights[2], "weights"), precision)
 
 
 def _next_step(placed: Placed) -> tuple[str, ...]:
@@ -128,7 +128,8 @@ ST = Target(
     summary="IEC 61131-3 function block for CODESYS, TwinCAT and other PLCs",
     versions=("2013", "twincat3"),
     limits=Limits(taps=1000, samples=100_000, precisions=("double", "single")),
-    render=render,
-    parse=parse,
+    render=_render,
+    parse=_parse,
+    run=as_kernel,
     next_step=_next_step,
 )

@@ -30,6 +30,7 @@ __all__ = ["ANGLE_LIMITS", "JOINTS", "RATE_LIMITS", "SHUTTLE_LINKS", "Links", "P
 Matrix = NDArray[np.float64]
 
 JOINTS = ("shoulder yaw", "shoulder pitch", "elbow pitch", "wrist pitch", "wrist yaw", "wrist roll")
+"""From the shoulder outwards."""
 
 ANGLE_LIMITS = np.radians(
     [[-180.0, 180.0], [-2.0, 145.0], [-161.0, 2.0], [-121.0, 121.0], [-121.0, 121.0], [-447.0, 447.0]]

@@ -94,6 +94,7 @@ def follow(
     q, motor = angles.copy(), angles.copy()
     wanted = angles.copy()
     v, w, acceleration = np.zeros_like(q), np.zeros_like(q), np.zeros_like(q)
+    before = np.zeros_like(q)
     renewal = max(1, round(RENEWED / step))
     recorded_links = np.empty((samples, *q.shape))
     recorded_motors = np.empty_like(recorded_links)
@@ -120,6 +121,10 @@ def follow(
         # At time 0 rates are known at the same moment as angles: half a kick leads to the middle of the step.
         kick = 0.5 * step if n == 0 else step
         command = reading(n)
+        # A kick goes from the middle of a step to that of the next, and a command changes between the two: what is read
+        # now acts in the second half only. Else all that is commanded later than at 0 would act half a step early.
+        acting = command if n == 0 else 0.5 * (before + command)
+        before = command
         twist = motor - q
         stretch = joints.stretch(twist)
         elastic = joints.torque(stretch)
@@ -130,9 +135,9 @@ def follow(
         acceleration = (inverse @ (gear - centripetal)[:, :, np.newaxis])[:, :, 0]
         v_next = v + kick * acceleration
         if servo is None:
-            pull, hold = command, np.zeros(6)
+            pull, hold = acting, np.zeros(6)
         else:
-            pull, hold = rate_gain * command + angle_gain * (wanted - motor), rate_gain
+            pull, hold = rate_gain * acting + angle_gain * (wanted - motor), rate_gain
         w_next, torque, friction = _turned(joints, w, pull, hold, gear, kick)
         if n % ratio == 0:
             recorded_links[n // ratio], recorded_motors[n // ratio] = q, motor

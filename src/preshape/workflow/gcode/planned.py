@@ -25,7 +25,8 @@ def planned(
     """The moves, sampled.
 
     The speed along the way rises and falls with the acceleration; at a corner it is so low that the velocity, as a
-    vector, jumps by no more than the corner speed.
+    vector, jumps by no more than the corner speed. An arc is one move, no faster than the acceleration across the way
+    allows, and has no corner where it leaves or meets a line along its tangent.
 
     Parameters
     ----------
@@ -47,11 +48,18 @@ def planned(
     begins : ndarray, shape (move,)
         When each begins [s].
     """
-    ways = np.array([move.way for move in moves])
-    lengths = np.linalg.norm(ways, axis=1)
-    directions = ways / lengths[:, None]
-    speeds = np.array([move.speed for move in moves])
-    joints = _joint_speeds(lengths, directions, speeds, acceleration, corner_speed)
+    pieces = [move.way[None, :] if move.arc is None else move.arc.chords for move in moves]
+    ways = np.concatenate(pieces)
+    begin = np.cumsum([0, *(len(each) for each in pieces[:-1])])
+    chords = np.linalg.norm(ways, axis=1)
+    lengths = np.add.reduceat(chords, begin)
+    along_way = ways / chords[:, None]
+    straight = zip(moves, along_way[begin], strict=True)
+    tangents = np.array([(way, way) if move.arc is None else move.arc.tangents for move, way in straight])
+    turns = np.linalg.norm(tangents[1:, 0] - tangents[:-1, 1], axis=1)
+    curved = [np.inf if move.arc is None else np.sqrt(acceleration * move.arc.radius) for move in moves]
+    speeds = np.minimum([move.speed for move in moves], curved)
+    joints = _joint_speeds(lengths, turns, speeds, acceleration, corner_speed)
     times, rates, begins = _time_law(lengths, joints, speeds, acceleration)
     if times[-1] / dt > MOST_SAMPLES:
         raise InputError(
@@ -60,8 +68,10 @@ def planned(
         )
     t = np.asarray(np.arange(int(np.ceil(times[-1] / dt - 1e-9)) + 1) * dt, dtype=float)
     along = _travelled(t, times, rates)
-    ends = np.concatenate([[0.0], np.cumsum(lengths)])
-    extruded = np.array([move.extruded for move in moves])[:, None] * directions**2
+    ends = np.concatenate([[0.0], np.cumsum(chords)])
+    of_move = np.repeat(np.arange(len(moves)), [len(each) for each in pieces])
+    share = np.array([move.extruded for move in moves])[of_move] * chords / lengths[of_move]
+    extruded = share[:, None] * along_way**2
     columns = np.concatenate([ways, extruded], axis=1)
     places = np.concatenate([np.zeros((1, 6)), np.cumsum(columns, axis=0)])
     # The end of the time law and that of the way differ by rounding.
@@ -71,13 +81,13 @@ def planned(
 
 def _joint_speeds(
     lengths: NDArray[np.float64],
-    directions: NDArray[np.float64],
+    turns: NDArray[np.float64],
     speeds: NDArray[np.float64],
     acceleration: float,
     corner_speed: float,
 ) -> NDArray[np.float64]:
-    """The highest speeds at the ends of the moves, shape (move + 1,), from rest to rest."""
-    turns = np.linalg.norm(np.diff(directions, axis=0), axis=1)
+    """The highest speeds at the ends of the moves, shape (move + 1,), from rest to rest; `turns` is by how much the
+    unit vector along the way changes at each joint."""
     both = np.minimum(speeds[:-1], speeds[1:])
     limits = np.where(turns < STRAIGHT, both, np.minimum(both, corner_speed / np.maximum(turns, STRAIGHT)))
     joints = [0.0, *limits.tolist(), 0.0]

@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 
 from preshape.checks import positive
 from preshape.errors import InputError
+from preshape.workflow.gcode.arcs import ARC_WORDS, ARCS, Arc, arc_of
 from preshape.workflow.gcode.words import Line, line_of
 
-__all__ = ["AXES", "Move", "Passed", "Run", "Writing", "read_program"]
+__all__ = ["AXES", "TOLERANCE", "Move", "Passed", "Run", "Writing", "read_program"]
 
 AXES = "XYZ"
 INCH = 25.4
+TOLERANCE = 0.004
+"""How far written motion may be from the shaped one [mm], unless told."""
 MOST_LINES = 2_000_000
 HARMLESS = {4.0, 90.1, 91.1, 97.0, 11.0, 17.0, 18.0, 19.0, 20.0, 21.0, 40.0, 61.0, 61.1, 64.0, 80.0, 90.0, 91.0, 94.0}
 BESIDE_A_MOVE = {17.0, 18.0, 19.0, 20.0, 21.0, 40.0, 61.0, 64.0, 90.0, 91.0, 94.0}
@@ -26,12 +29,14 @@ LOSING_COMMANDS = ("M0", "M1", "M6", "M60", "M98", "M125", "M206", "M428", "M600
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """A straight move: ways of the three axes [mm], what is extruded [mm], speed [mm/s]; its line's number."""
+    """A move: ways of the three axes [mm], what is extruded [mm], speed [mm/s]; its line's number; its arc, if it is no
+    straight line."""
 
     way: NDArray[np.float64]
     extruded: float
     speed: float
     line: int
+    arc: Arc | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +73,9 @@ class Run:
 class _Reader:
     """The modal state of a controller, line after line."""
 
-    def __init__(self, start: Mapping[str, float], rapid: float | None) -> None:
+    def __init__(self, start: Mapping[str, float], rapid: float | None, tolerance: float) -> None:
+        self.tolerance = tolerance
+        self.plane, self.absolute_centres = 17.0, False
         self.rapid = None if rapid is None else positive("the rapid speed", rapid, "mm/s")
         self.place = np.array([start.get(axis, np.nan) for axis in AXES], dtype=float)
         self.extrusion = 0.0
@@ -111,13 +118,16 @@ class _Reader:
     def _words(self, line: Line) -> None:
         codes = line.codes
         for code in codes:
-            if code in (0.0, 1.0):
+            if code in (0.0, 1.0, *ARCS):
                 self.motion = code
             elif code in (90.0, 91.0, 20.0, 21.0):
                 self._set(code)
             elif code not in HARMLESS | LOSING | {10.0, 92.0}:
-                remedy = "let the program that wrote it write arcs as lines" if code in (2.0, 3.0) else "take it out"
-                raise InputError(f"line {line.number} has G{code:g}, which is not read here: {remedy}.")
+                raise InputError(f"line {line.number} has G{code:g}, which is not read here: take it out.")
+            elif code in (17.0, 18.0, 19.0):
+                self.plane = code
+            elif code in (90.1, 91.1):
+                self.absolute_centres = code == 90.1
         feed = line.value("F")
         if feed is not None:
             if feed <= 0.0:
@@ -131,7 +141,7 @@ class _Reader:
             self._offset(line)
         elif 4.0 in codes:
             self._pass(line)
-        elif any(name in "ABCUVWXYZE" for name, _ in line.words or ()):
+        elif any(name in "ABCUVWXYZE" + ARC_WORDS for name, _ in line.words or ()):
             self._move(line)
         elif any(name not in "GFN" or (name == "G" and value not in (0.0, 1.0)) for name, value in line.words or ()):
             self._pass(line)
@@ -169,13 +179,14 @@ class _Reader:
             self.extrusion = e * self.writing.unit
 
     def _move(self, line: Line) -> None:
-        others = sorted({name for name, _ in line.words or ()} - set("GFNXYZE"))
+        arcs = self.motion in ARCS
+        others = sorted({name for name, _ in line.words or ()} - set("GFNXYZE" + ARC_WORDS * arcs))
         if others:
             raise InputError(
                 f"line {line.number} has {', '.join(others)} beside a move: only X, Y, Z, E and F are read there; put "
                 "other words on a line of their own, and leave out other axes."
             )
-        modes = [code for code in line.codes if code not in (0.0, 1.0)]
+        modes = [code for code in line.codes if code not in (0.0, 1.0, *ARCS)]
         if set(modes) - BESIDE_A_MOVE:
             raise InputError(f"line {line.number} has other G words beside a move: put them on a line before.")
         if modes:
@@ -184,7 +195,8 @@ class _Reader:
             raise InputError(f"line {line.number} moves without G0 or G1 before: say which.")
         way, unknown = self._way(line)
         extruded = self._extruded(line)
-        moved = bool(way.any())
+        arc = self._arc(line, way) if arcs and not unknown else None
+        moved = arc is not None or bool(way.any())
         if unknown or (extruded and not moved):
             self._pass(line, moves=True)
             return
@@ -202,8 +214,19 @@ class _Reader:
         if line.comment:
             last.comments.append((len(last.moves), line.comment))
         if moved:
-            last.moves.append(Move(way, extruded, speed, line.number))
+            last.moves.append(Move(way, extruded, speed, line.number, arc))
         last.feed, last.rapid = self.feed, self.motion == 0.0
+
+    def _arc(self, line: Line, way: NDArray[np.float64]) -> Arc:
+        if self.motion not in line.codes:
+            raise InputError(f"line {line.number} goes on after an arc without G word: say G0, G1, G2 or G3.")
+        if self.plane != 17.0 or self.absolute_centres:
+            mode = "G90.1" if self.absolute_centres else f"G{self.plane:g}"
+            raise InputError(
+                f"line {line.number} has an arc under {mode}: arcs are read in the XY plane (G17) with I and J from "
+                "their start (G91.1); let the program that wrote it write these as lines."
+            )
+        return arc_of(line, way, self.writing.unit, self.tolerance)
 
     def _way(self, line: Line) -> tuple[NDArray[np.float64], bool]:
         """By how much the axes move [mm], and whether one of them begins at a place that is not known."""
@@ -234,20 +257,26 @@ class _Reader:
 
 
 def read_program(
-    text: str, *, start: Mapping[str, float] | None = None, rapid: float | None = None
+    text: str,
+    *,
+    start: Mapping[str, float] | None = None,
+    rapid: float | None = None,
+    tolerance: float = TOLERANCE,
 ) -> list[Passed | Run]:
     """A program as runs of moves and lines between them, in order.
 
     Parameters
     ----------
     text : str
-        G-code: G0 and G1 with X, Y, Z, E and F; G90, G91, G20, G21, G92, M82, M83 are followed; all else that is
-        not refused is passed on.
+        G-code: G0 and G1 with X, Y, Z, E and F; G2 and G3 in the XY plane with I and J, or R; G90, G91, G20,
+        G21, G92, M82, M83 are followed; all else that is not refused is passed on.
     start : mapping of str to float, optional
         Where the axes stand before the first line [mm], by letter. A move from a place that is not known, there or
         after homing, is passed on; its end is known.
     rapid : float, optional
         Speed of G0 [mm/s]; the feed in force unless given.
+    tolerance : float
+        Of the shaped motion [mm]; arcs become chords that stay within a twentieth of it.
 
     Raises
     ------
@@ -257,7 +286,7 @@ def read_program(
     lines = text.splitlines()
     if len(lines) > MOST_LINES:
         raise InputError(f"the program has {len(lines):,} lines: up to {MOST_LINES:,} are read.")
-    reader = _Reader(start or {}, rapid)
+    reader = _Reader(start or {}, rapid, tolerance)
     for line in _lines(lines):
         reader.read(line)
     return reader.items

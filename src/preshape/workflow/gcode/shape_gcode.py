@@ -16,7 +16,7 @@ from preshape.errors import InputError
 from preshape.files import write_atomically
 from preshape.shaper import Shaper
 from preshape.workflow.gcode.planned import planned
-from preshape.workflow.gcode.program import AXES, Passed, Run, read_program
+from preshape.workflow.gcode.program import AXES, TOLERANCE, Passed, Run, read_program
 from preshape.workflow.gcode.segments import segments
 from preshape.workflow.gcode.written import DWELLS, written
 
@@ -75,7 +75,7 @@ def shape_gcode(
     corner_speed: float = 0.0,
     rapid: float | None = None,
     start: Mapping[str, float] | None = None,
-    tolerance: float = 0.004,
+    tolerance: float = TOLERANCE,
     dt: float = 0.0005,
     shortest: float = 0.002,
     dwell: str = "seconds",
@@ -88,13 +88,13 @@ def shape_gcode(
     Parameters
     ----------
     program : path
-        G-code with straight moves, G0 and G1.
+        G-code with straight moves, G0 and G1, and arcs in the XY plane, G2 and G3.
     shapers : mapping of str to Shaper
         By axis, x, y or z.
     out : path
         The file to write.
     acceleration : float
-        Of the planned moves, along the way [mm/s^2].
+        Of the planned moves, along the way [mm/s^2]; arcs are no faster than this acceleration across the way allows.
     corner_speed : float
         By how much the velocity may jump at a corner, as a vector [mm/s]; 0 stops at every corner.
     rapid : float, optional
@@ -103,7 +103,7 @@ def shape_gcode(
         Where axes stand before the first line [mm].
     tolerance : float
         How far the written motion may be from the shaped one, at the same time [mm]: about that much vibration comes
-        back.
+        back. Arcs are planned as chords that stay within a twentieth of it.
     dt : float
         Sample time of planning and shaping [s].
     shortest : float
@@ -127,7 +127,7 @@ def shape_gcode(
         raise InputError(f"{out} is the program itself: choose another name, so that nothing is lost.")
     each = _of_axes(shapers)
     text = _text(program)
-    items = read_program(text, start=_places(start or {}), rapid=rapid)
+    items = read_program(text, start=_places(start or {}), rapid=rapid, tolerance=tolerance)
     fewest = max(1, int(np.ceil(shortest / dt - 1e-9)))
     lines: list[str] = []
     before = after = deviation = speed_step = 0.0

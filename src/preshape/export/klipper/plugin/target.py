@@ -10,22 +10,22 @@ from dataclasses import replace
 from preshape.errors import InputError
 from preshape.export.axes import of_axis
 from preshape.export.c_source import filled
-from preshape.export.config_text import numbers_of, section_of
+from preshape.export.config_text import impulse_lines, numbers_of, section_of
 from preshape.export.family import executed
 from preshape.export.klipper.settings import AXES
 from preshape.export.settings_target import Configured, SettingsTarget, Written
 from preshape.export.target import Limits
 from preshape.shaper import Shaper
 
-__all__ = ["PLUGIN"]
+__all__ = ["KLIPPER_PLUGIN"]
 
 MODULE = "preshape_shaper.py"
 
-LIMITS = Limits(taps=10, negative=True, resolution="to 12 digits")
+LIMITS = Limits(taps=10, negative=True, resolution="to 12 digits", seconds=1e-11, amplitude=1e-12)
 OTHER = {"old": replace(LIMITS, taps=5), "kalico": replace(LIMITS, taps=25)}
 
 
-def _execute(text: str, version: str, axis: str | None = None) -> Shaper:
+def _run(text: str, version: str, axis: str | None = None) -> Shaper:
     settings = section_of(text, "preshape_shaper")
     found = {}
     for one in AXES:
@@ -46,10 +46,7 @@ def _execute(text: str, version: str, axis: str | None = None) -> Shaper:
 def _write(shaper: Shaper, version: str, axes: tuple[str, ...]) -> Written:
     lines = ["[preshape_shaper]"]
     for axis in axes:
-        lines += [
-            f"amplitudes_{axis}: {', '.join(f'{value:.12g}' for value in shaper.amplitudes)}",
-            f"times_{axis}: {', '.join(f'{value:.12g}' for value in shaper.times)}",
-        ]
+        lines += impulse_lines(shaper, axis, "amplitudes", "times", ".12g")
     module = filled("preshape.export.klipper.plugin", f"{MODULE}.in", version=version)
     return Written("\n".join(lines) + "\n", beside={MODULE: module})
 
@@ -62,13 +59,13 @@ def _next_step(configured: Configured) -> tuple[str, ...]:
     )
 
 
-PLUGIN = SettingsTarget(
+KLIPPER_PLUGIN = SettingsTarget(
     "klipper-plugin",
     "any impulses for Klipper or Kalico: a module for klippy",
     ("2026-03", "old", "kalico"),
     LIMITS,
     _write,
-    _execute,
+    _run,
     ".cfg",
     "#",
     AXES,
