@@ -9,6 +9,7 @@ import pytest
 
 import preshape
 from preshape.errors import InputError
+from preshape.export import TARGETS, render
 from preshape.export.gcode import commands
 from preshape.workflow import recipe
 
@@ -37,6 +38,20 @@ def test_rrf_records_long_enough_and_never_too_long_a_name() -> None:
     lasts = 0.3 + (100.0 / 200.0 + 200.0 / 5000.0) + 0.5  # quiet, the move, and enough after it
     assert all(float(words["S"]) / 1344.0 > lasts and words["A"] == "0" for words in recordings)
     assert moved(text) == 0.0
+
+
+@pytest.mark.parametrize("shaper", [preshape.design.zvd((40.0, 0.05)), preshape.design.mzv((52.0, 0.08))])
+def test_the_shaped_lines_do_what_an_export_would(shaper: preshape.Shaper) -> None:
+    text = recipe("rrf", **MOVE, shaper=shaper)
+    lines = [line for line in text.splitlines() if line.startswith("M593") and "none" not in line]
+    exported = render(shaper, "rrf")
+    assert TARGETS["rrf"].execute("\n".join(lines)) == exported.target.execute(exported.files)
+    line = next(line for line in recipe("klipper", **MOVE, shaper=shaper).splitlines() if "SHAPER_TYPE_Y" in line)
+    words = dict(word.lower().split("=") for word in line.split()[1:])
+    settings = "[input_shaper]\n" + "\n".join(f"{name}: {value}" for name, value in words.items())
+    exported = render(shaper, "klipper", axis="y")
+    assert TARGETS["klipper"].execute(settings) == exported.target.execute(exported.files)
+    assert "PUT YOUR SHAPER" not in text + line
 
 
 def test_a_table_holds_the_move_and_what_the_shaper_makes_of_it() -> None:

@@ -17,6 +17,7 @@ __all__ = ["command"]
 @click.option("--after", multiple=True, metavar="FILE", help="A recording with the shaper; once for each repeat.")
 @click.option("--shaper", metavar="SHAPER.json", help="What the machine was told to execute: for the prediction.")
 @click.option("--stop", metavar="S[:S]", help="When the move stops [s], or before:after.  [default: found]")
+@click.option("--lasting", type=float, metavar="S", help="How long the unshaped move takes [s]: see the recipe.")
 @click.option("--window", type=float, metavar="S", help="Time after the stop for the root mean square [s].")
 @click.option("--below", type=float, metavar="HZ", help="Frequency up to which it is taken.")
 @click.option("--figure", type=click.Path(path_type=Path), metavar="FILE", help="Draw it: .svg, .png or .pdf.")
@@ -33,6 +34,7 @@ def command(
     after: tuple[str, ...],
     shaper: str | None,
     stop: str | None,
+    lasting: float | None,
     window: float | None,
     below: float | None,
     figure: Path | None,
@@ -75,7 +77,7 @@ def command(
     kind = None if figure is None else figure_format(figure)
     progress = console(stderr=True)
     with progress.status("reading, finding the stop and the modes ..."):
-        verification = verify(before, after, shaper=told, stop=_stop(stop), window=window, below=below)
+        verification = verify(before, after, shaper=told, stop=_stop(stop), lasting=lasting, window=window, below=below)
     written = []
     if figure is not None and kind is not None:
         with progress.status("drawing ..."):

@@ -61,8 +61,8 @@ class ModeVerdict:
         Lowest, middle and highest residual vibration [-] of the shaper within the intervals of frequency and damping.
     verdict : str
         With a shaper "as predicted", "less than predicted" (it takes less away) or "more than predicted"; without one
-        "reduced", "increased" or "no sure change"; "not distinguishable from noise"; "stop in doubt" where the moves do
-        not last longer by the shaper's duration.
+        "reduced", "increased" or "no sure change"; "not distinguishable from noise"; "stop in doubt" where the shaped
+        recordings are not what the shaper makes of the unshaped ones, and the stop was not given.
     new : bool
         True when the shaped recordings show it, and more of it than the unshaped ones.
     """

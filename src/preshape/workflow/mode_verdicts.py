@@ -8,12 +8,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from preshape.identify import IdentifiedMode
-from preshape.mode import Mode
 from preshape.report import AS_PREDICTED, DOUBTFUL, LESS, MORE, NOISE, Estimate, ModeVerdict
 from preshape.shaper import Shaper
 from preshape.vibration import residual_vibration
+from preshape.workflow.move_stops import Stops
 from preshape.workflow.ratio_interval import ratio_interval
-from preshape.workflow.ring_amplitudes import NORMAL_95, RingFit, Tail, amplitude_interval, fit_ringing
+from preshape.workflow.ratio_spreads import pole_spreads, start_spread
+from preshape.workflow.ring_amplitudes import NORMAL_95, RingFit, Tail, amplitude_interval
 
 __all__ = ["judged", "unmatched"]
 
@@ -42,9 +43,8 @@ def judged(
     known: int,
     tails: Sequence[Sequence[Tail]],
     fits: Sides,
-    spreads: Sequence[float],
+    stops: Stops,
     shaper: Shaper | None,
-    doubtful: bool,
 ) -> tuple[tuple[ModeVerdict, ...], list[str]]:
     """Verdicts, and sentences on what cannot be told.
 
@@ -57,21 +57,22 @@ def judged(
         How many are not new.
     tails, fits : sequence of two sequences
         Of the recordings before and after.
-    spreads : sequence of two float
-        Standard deviations of the mean stop before and after [s].
+    stops : Stops
+        How surely they are known.
     shaper : Shaper or None
         For the prediction.
-    doubtful : bool
-        Whether the stops contradict the shaper, so that nothing can be said.
     """
-    slopes = _pole_spreads(modes, tails)
+    poles = pole_spreads(modes, tails)
     verdicts, trouble = [], []
     for index, one in enumerate(modes):
         before, after = (amplitude_interval(side, index) for side in fits)
         ratio, low, high = ratio_interval(after, before)
-        by_stop = ratio * one.mode.damping * one.mode.omega * math.hypot(*spreads)
-        more = NORMAL_95 * math.hypot(slopes[index], by_stop if math.isfinite(by_stop) else 0.0)
-        if math.isfinite(ratio):
+        decay = one.mode.damping * one.mode.omega
+        if stops.doubtful:
+            low, high = 0.0, math.inf
+        elif math.isfinite(ratio):
+            start = start_spread([mode.mode for mode in modes], index, tails, (ratio, low, high))
+            more = NORMAL_95 * math.hypot(poles[index], start, ratio * decay * stops.between)
             low = max(ratio - math.hypot(ratio - low, more), 0.0)
             high = ratio + math.hypot(high - ratio, more)
         measured = Estimate(ratio, low, high)
@@ -79,14 +80,25 @@ def judged(
         new = index >= known
         if new and not (low > 1.0 or (before[1] <= 0.0 < after[1] and after[1] > before[2])):
             continue
-        verdict = DOUBTFUL if doubtful else _verdict(measured, predicted, before[1] <= 0.0, after[1] <= 0.0)
+        verdict = DOUBTFUL if stops.doubtful else _verdict(measured, predicted, before[1] <= 0.0, after[1] <= 0.0)
         if before[1] <= 0.0 and not new:
             trouble.append(
                 f"the noise is too high to tell what became of the mode at {one.mode.frequency:.3g} Hz: "
                 "record louder moves, or several repeats."
             )
-        verdicts.append(ModeVerdict(one, Estimate(*before), Estimate(*after), measured, predicted, verdict, new))
+        shown = [
+            _widened(amplitude, decay * max(motion.spread for motion in side))
+            for amplitude, side in ((before, stops.before), (after, stops.after))
+        ]
+        verdicts.append(ModeVerdict(one, shown[0], shown[1], measured, predicted, verdict, new))
     return tuple(verdicts), trouble
+
+
+def _widened(amplitude: tuple[float, float, float], relative: float) -> Estimate:
+    """An amplitude at the stop, whose interval counts that the stop is not known; `relative` is that deviation."""
+    value, low, high = amplitude
+    more = NORMAL_95 * relative * value
+    return Estimate(value, max(value - math.hypot(value - low, more), 0.0), value + math.hypot(high - value, more))
 
 
 def _verdict(
@@ -113,34 +125,3 @@ def _predicted(shaper: Shaper, one: IdentifiedMode) -> tuple[float, float, float
     around = residual_vibration(shaper, frequencies[:, None], dampings[None, :])
     middle = float(residual_vibration(shaper, one.mode.frequency, one.mode.damping))
     return min(float(around.min()), middle), middle, max(float(around.max()), middle)
-
-
-def _pole_spreads(modes: Sequence[IdentifiedMode], tails: Sequence[Sequence[Tail]]) -> np.ndarray:
-    """Standard deviation of each mode's ratio for the uncertainty of all poles, by differences, shape (mode,)."""
-    plain = [one.mode for one in modes]
-    middle = _ratios(tails, plain)
-    total = np.zeros(len(modes))
-    for index, one in enumerate(modes):
-        for moved in _moved(one):
-            shifted = _ratios(tails, [*plain[:index], moved, *plain[index + 1 :]])
-            total += (shifted - middle) ** 2
-    return np.sqrt(total)
-
-
-def _moved(one: IdentifiedMode) -> list[Mode]:
-    """The mode with its frequency, and with its damping, one standard deviation higher."""
-    frequency = 0.5 * (one.frequency_interval[1] - one.frequency_interval[0]) / NORMAL_95
-    damping = 0.5 * (one.damping_interval[1] - one.damping_interval[0]) / NORMAL_95
-    return [
-        Mode(one.mode.frequency + frequency, one.mode.damping),
-        Mode(one.mode.frequency, min(one.mode.damping + damping, 0.99)),
-    ]
-
-
-def _ratios(tails: Sequence[Sequence[Tail]], modes: Sequence[Mode]) -> np.ndarray:
-    """Ratio of the amplitudes as they come out, with the noise in them."""
-    sides = []
-    for side in tails:
-        fits = [fit_ringing(tail, modes).parts for tail in side]
-        sides.append(np.sqrt(np.mean([np.sum(parts**2, axis=(1, 2)) for parts in fits], axis=0)))
-    return np.asarray(sides[1] / np.maximum(sides[0], np.finfo(float).tiny))

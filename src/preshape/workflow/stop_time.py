@@ -12,7 +12,7 @@ from preshape.identify import TimeSeries, ring_down
 from preshape.identify.free_decay import find_free_decay
 from preshape.mode import Mode
 
-__all__ = ["Motion", "find_motion"]
+__all__ = ["Motion", "find_motion", "find_stop"]
 
 MOST_MODES = 4
 """Modes of the vibration that is continued backwards."""
@@ -25,7 +25,12 @@ LOUD = 5.0
 
 QUIETEST = 24
 SURELY_QUIET = 0.7
-"""Samples that must be quiet before the move for the floor to be known, and the part of the time before it that is."""
+MOVING = 0.95
+"""Samples that must be quiet before the move for the floor to be known, the part of the time before it that is, and the
+part of all samples that may be quiet."""
+
+BEGUN = 0.002
+"""Standard deviation of a beginning [s]: with limited jerk the first samples are below the noise."""
 
 WIDTHS = (4, 8, 16, 32)
 """Samples over which it is asked whether they continue the free vibration backwards."""
@@ -56,65 +61,73 @@ class Motion:
     ----------
     begin : float or None
         When it begins [s]; None where the recording starts later.
+    begin_spread : float
+        Standard deviation of `begin` [s].
     stop : float
         When the command stops [s]; the first sample's time where the recording starts later.
     spread : float
         Standard deviation of `stop` [s]; 0 when it was given or the recording starts there.
     floor : ndarray or None, shape (channel,)
         Standard deviation of each channel before the move.
-    top : float or None
-        Largest speed, in the unit of the values times seconds; None where the beginning is not recorded.
     """
 
     begin: float | None
+    begin_spread: float
     stop: float
     spread: float
     floor: _Array | None
-    top: float | None
 
-
-def find_motion(series: TimeSeries, stop: float | None, known: Sequence[Mode] = ()) -> Motion:
-    """Beginning, stop and floor of a recording; `stop` [s] when it is known, and the modes that are known.
-
-    The stop is the earliest time from which on the record is free vibration: a free part is found near the end, and
-    continued backwards as long as what was measured before agrees with it.
-    """
-    begin, floor = _beginning(series)
-    spread = 0.0
-    if stop is None:
-        stop, spread = _stop(series, begin, known)
-    top = None
-    if begin is not None and floor is not None:
-        first = round((begin - series.start) * series.sample_rate)
-        last = round((stop - series.start) * series.sample_rate)
+    def top(self, series: TimeSeries) -> float | None:
+        """Largest speed until the stop, in the unit of the values times seconds; None without the beginning."""
+        if self.begin is None:
+            return None
+        first = int((self.begin - series.start) * series.sample_rate)
+        last = round((self.stop - series.start) * series.sample_rate)
+        if not 0 < first < last:
+            return None
         moving = series.values - series.values[:, :first].mean(axis=-1, keepdims=True)
         speeds = np.cumsum(moving[:, :last], axis=-1) / series.sample_rate
-        top = float(np.sqrt(np.max(np.sum(speeds**2, axis=0)))) if last > first else None
-    return Motion(begin, stop, spread, floor, top)
+        return float(np.sqrt(np.max(np.sum(speeds**2, axis=0))))
 
 
-def _beginning(series: TimeSeries) -> tuple[float | None, _Array | None]:
-    """When the record stops being quiet, and the noise until then; (None, None) when it begins in motion."""
+def find_motion(series: TimeSeries) -> Motion:
+    """Beginning and floor of a recording; the stop is still to be found."""
+    begin, spread, floor = _beginning(series)
+    return Motion(begin, spread, series.start, 0.0, floor)
+
+
+def _beginning(series: TimeSeries) -> tuple[float | None, float, _Array | None]:
+    """When the record stops being quiet, the standard deviation of that, and the noise until then.
+
+    None, 0 and None when it begins in motion.
+    """
+    nothing = None, 0.0, None
+    if series.values.shape[-1] < 2 * QUIETEST:
+        return nothing
     first = series.values[:, :QUIETEST]
-    if first.shape[-1] < QUIETEST:
-        return None, None
-    middle, noise = first.mean(axis=-1, keepdims=True), first.std(axis=-1, keepdims=True)
-    whole = float(np.sqrt(np.sum(np.var(series.values, axis=-1))))
-    if float(np.sqrt(np.sum(noise**2))) > whole / LOUD:
-        return None, None
-    tiny = np.finfo(float).tiny
-    loud = np.flatnonzero((np.abs(series.values - middle) > LOUD * (noise + tiny)).sum(axis=0))
+    middle, noise = first.mean(axis=-1, keepdims=True), first.std(axis=-1, keepdims=True) + np.finfo(float).tiny
+    off = np.abs(series.values - middle)
+    # A record that begins in motion has its largest deviations there.
+    if not np.any(np.quantile(off, MOVING, axis=-1) > LOUD * noise[:, 0]):
+        return nothing
+    loud = np.flatnonzero((off > LOUD * noise).sum(axis=0))
     loud = loud[loud >= QUIETEST]
-    if not loud.size:
-        return None, None
     # A single outlier is none: two of the next three are loud, too.
-    onset = next((int(k) for k in loud if np.count_nonzero((loud > k) & (loud <= k + 3)) >= 2), int(loud[0]))
+    onset = next((int(k) for k in loud if np.count_nonzero((loud > k) & (loud <= k + 3)) >= 2), None)
+    if onset is None:
+        return nothing
     quiet = series.values[:, : max(int(SURELY_QUIET * onset), QUIETEST)]
-    return series.start + onset / series.sample_rate, np.asarray(quiet.std(axis=-1, ddof=1))
+    floor = quiet.std(axis=-1, ddof=1) + np.finfo(float).tiny
+    return series.start + onset / series.sample_rate, max(BEGUN, 1.0 / series.sample_rate), np.asarray(floor)
 
 
-def _stop(series: TimeSeries, begin: float | None, known: Sequence[Mode]) -> tuple[float, float]:
-    """The stop [s] and its standard deviation."""
+def find_stop(series: TimeSeries, begin: float | None, known: Sequence[Mode] = ()) -> tuple[float, float]:
+    """The stop [s] and its standard deviation, for a move that began at `begin`, or before the recording (None).
+
+    The stop is the earliest time from which on the record is free vibration: a free part is found near the end, and
+    continued backwards as long as what was measured before agrees with it. One time in three that is wrong by more than
+    a millisecond, so it takes two recordings to be believed.
+    """
     rate, values, samples = series.sample_rate, series.values, series.values.shape[-1]
     decay = find_free_decay(series, MOST_MODES)
     if decay is None:
@@ -169,7 +182,7 @@ class _Continuation:
         The odds are those of the mean of the last w of them, in standard deviations, for each of `WIDTHS`: a command
         that has not stopped is first of all an offset.
         """
-        scale = 1.0 / np.sqrt(np.diagonal(self._normal[first]))
+        scale = 1.0 / np.maximum(np.sqrt(np.diagonal(self._normal[first])), 1e-150)
         inverse = scale[:, None] * np.linalg.pinv(scale[:, None] * self._normal[first] * scale) * scale
         found = inverse @ self._right[first]
         rest = self._squares[first] - np.sum(found * self._right[first], axis=0)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 
 from preshape.errors import InputError
+from preshape.export import render
 from preshape.shaper import Shaper
 
 __all__ = ["RECIPES", "recipe"]
@@ -36,13 +37,16 @@ LEAST = 1e-3
 
 
 def _klipper(axis: str, distance: float, speed: float, acceleration: float, shaper: Shaper | None, repeats: int) -> str:
-    upper = axis.upper()
-    setting = (
+    upper, lasting = axis.upper(), _duration(distance, speed, acceleration)
+    setting = [
         f"SET_INPUT_SHAPER SHAPER_TYPE_{upper}=mzv SHAPER_FREQ_{upper}=50 DAMPING_RATIO_{upper}=0.1"
         " ; PUT YOUR SHAPER HERE, see: preshape export klipper"
-    )
+    ]
+    if shaper is not None:
+        setting = _klipper_lines(shaper, axis)
     lines = [
         "; Home first. Put the head where the move fits; all moves are relative and come back.",
+        f"; Compare with: preshape verify --lasting {lasting:.5g} --before ... --after ... --shaper ...",
         "; The sensor is [adxl345]; for a named one add CHIP=name to each ACCELEROMETER_MEASURE.",
         "; The files are /tmp/adxl345-<NAME>.csv on the printer's computer.",
         f"SET_VELOCITY_LIMIT VELOCITY={speed:g} ACCEL={acceleration:g}",
@@ -50,8 +54,8 @@ def _klipper(axis: str, distance: float, speed: float, acceleration: float, shap
         "SET_VELOCITY_LIMIT MINIMUM_CRUISE_RATIO=0",
         "G91",
     ]
-    for kind, line in (("before", f"SET_INPUT_SHAPER SHAPER_FREQ_{upper}=0"), ("after", setting)):
-        lines += ["", f"; {'unshaped' if kind == 'before' else 'shaped'}", line]
+    for kind, switched in (("before", [f"SET_INPUT_SHAPER SHAPER_FREQ_{upper}=0"]), ("after", setting)):
+        lines += ["", f"; {'unshaped' if kind == 'before' else 'shaped'}", *switched]
         for number in range(1, repeats + 1):
             lines += [
                 f"G4 P{1e3 * REST:.0f}",
@@ -69,11 +73,12 @@ def _klipper(axis: str, distance: float, speed: float, acceleration: float, shap
 
 
 def _rrf(axis: str, distance: float, speed: float, acceleration: float, shaper: Shaper | None, repeats: int) -> str:
-    upper = axis.upper()
-    moving = _duration(distance, speed, acceleration) + (shaper.duration if shaper else 0.2)
+    upper, lasting = axis.upper(), _duration(distance, speed, acceleration)
+    moving = lasting + (shaper.duration if shaper else 0.2)
     samples = math.ceil(RRF_RATE * (QUIET + moving + AFTER))
     lines = [
         "; Home first. Put the head where the move fits; all moves are relative and come back.",
+        f"; Compare with: preshape verify --lasting {lasting:.5g} --before ... --after ... --shaper ...",
         "; P0 is a sensor on the main board; on a CAN board write its address, such as P121.0 (see M955).",
         f"; {samples} samples at {RRF_RATE:g} Hz (LIS3DH); another rate needs another number.",
         "; The files are in 0:/sys/accelerometer. Discard those whose last line counts overflows.",
@@ -82,9 +87,11 @@ def _rrf(axis: str, distance: float, speed: float, acceleration: float, shaper: 
         f"M204 P{acceleration:g} T{acceleration:g}",
         "G91",
     ]
-    shaped = 'M593 P"zvd" F40 S0.1 ; PUT YOUR SHAPER HERE, see: preshape export rrf'
-    for kind, line in (("before", 'M593 P"none"'), ("after", shaped)):
-        lines += ["", f"; {'unshaped' if kind == 'before' else 'shaped'}", line]
+    shaped = ['M593 P"zvd" F40 S0.1 ; PUT YOUR SHAPER HERE, see: preshape export rrf']
+    if shaper is not None:
+        shaped = _settings(shaper, "rrf", None)
+    for kind, switched in (("before", ['M593 P"none"']), ("after", shaped)):
+        lines += ["", f"; {'unshaped' if kind == 'before' else 'shaped'}", *switched]
         for number in range(1, repeats + 1):
             lines += [
                 "M400",
@@ -144,7 +151,8 @@ def recipe(
     distance, speed, acceleration : float
         Of the move [mm, mm/s, mm/s²]; of a CSV in any unit of length.
     shaper : Shaper, optional
-        For the duration of the recording, and for the shaped column of a CSV.
+        Written into the recipe, as `preshape export` would for this controller; without it a line says where to put
+        yours.
     repeats : int
         Recordings of each kind, 1 to 20.
 
@@ -174,6 +182,22 @@ def recipe(
     if isinstance(repeats, bool) or not isinstance(repeats, int) or not 1 <= repeats <= 20:
         raise InputError(f"{repeats!r} repeats make no sense: give 1 to 20.")
     return RECIPES[target](axis, distance, speed, acceleration, shaper, repeats)
+
+
+def _settings(shaper: Shaper, target: str, axis: str | None) -> list[str]:
+    """The lines that `preshape export` would have the user paste, without blank ones."""
+    exported = render(shaper, target, axis=axis)
+    written = next(str(text) for name, text in exported.files.items() if name.endswith(exported.target.ending))
+    return [line for line in written.splitlines() if line.strip()]
+
+
+def _klipper_lines(shaper: Shaper, axis: str) -> list[str]:
+    """What Klipper's configuration would say, as the command that says it while the printer runs."""
+    settings = _settings(shaper, "klipper", axis)
+    comments = [f"; {line.lstrip('# ')}" for line in settings if line.startswith("#")]
+    pairs = [line.split("#")[0].split(":" if ":" in line else "=") for line in settings if line[:1].isalpha()]
+    words = " ".join(f"{name.strip().upper()}={value.strip()}" for name, value in pairs)
+    return [*comments, f"SET_INPUT_SHAPER {words}"]
 
 
 def _duration(distance: float, speed: float, acceleration: float) -> float:

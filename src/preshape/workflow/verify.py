@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -19,10 +18,11 @@ from preshape.mode import Mode
 from preshape.report import Estimate, Ringing, Verification
 from preshape.shaper import Shaper
 from preshape.workflow.mode_verdicts import judged, unmatched
+from preshape.workflow.move_stops import find_stops
 from preshape.workflow.ratio_interval import ratio_interval
 from preshape.workflow.ring_amplitudes import NORMAL_95, RingFit, Tail, band_power, fit_ringing
-from preshape.workflow.stop_time import Motion, find_motion
-from preshape.workflow.verification_trouble import comparison_trouble, move_trouble, stop_doubt
+from preshape.workflow.stop_time import Motion
+from preshape.workflow.verification_trouble import comparison_trouble, move_trouble
 
 __all__ = ["verify"]
 
@@ -52,6 +52,7 @@ def verify(
     *,
     shaper: Shaper | None = None,
     stop: float | tuple[float, float] | None = None,
+    lasting: float | None = None,
     window: float | None = None,
     below: float | None = None,
 ) -> Verification:
@@ -65,7 +66,9 @@ def verify(
         What the machine was told to execute; its residual vibration is set beside the measurement.
     stop : float or pair of float, optional
         When the move stops [s]: one time for all recordings, or one for those before and one for those after. Found
-        in each recording by itself unless given.
+        by itself unless given.
+    lasting : float, optional
+        How long the unshaped move takes [s], as the recipe says: the stop is then so long after the beginning.
     window : float, optional
         Time after the stop over which the root mean square is taken [s]; all that is recorded, up to six time
         constants of the slowest mode, unless given.
@@ -106,16 +109,16 @@ def verify(
     sides = [_recordings(before, "before"), _recordings(after, "after")]
     everything = [one for side in sides for one in side]
     _check_alike(everything)
-    stops = _stops(stop)
-    motions = [[find_motion(one, stops[0]) for _, one in sides[0]]]
-    tails = [_tails(sides[0], motions[0])]
+    if lasting is not None:
+        lasting = positive("lasting", lasting, "s")
+    stops = find_stops(sides[0], sides[1], shaper, _stops(stop), lasting)
+    motions = (stops.before, stops.after)
+    tails = [_tails(side, moved, stops.guard) for side, moved in zip(sides, motions, strict=True)]
     found = _modes(tails[0], sides[0][0][1])
-    known = [one.mode for one in found.modes]
-    motions.append([find_motion(one, stops[1], known) for _, one in sides[1]])
-    tails.append(_tails(sides[1], motions[1]))
     trouble = [
         *comparison_trouble([name for name, _ in sides[0]], [name for name, _ in sides[1]], everything),
-        *move_trouble(motions[0], motions[1], shaper),
+        *move_trouble(sides, motions),
+        *stops.trouble,
     ]
     extra = unmatched(_modes(tails[1], sides[1][0][1]).modes, found.modes)
     if not found.modes:
@@ -124,9 +127,7 @@ def verify(
     length = _length(tails, modes)
     tails = [[replace(tail, values=tail.values[:, : int(length * tail.rate)]) for tail in side] for side in tails]
     fits = [[fit_ringing(tail, [one.mode for one in modes]) for tail in side] for side in tails]
-    doubt = 0.0 if any(one is not None for one in stops) else stop_doubt(motions[0], motions[1], shaper)
-    spreads = [math.hypot(doubt, *(motion.spread for motion in side)) / len(side) for side in motions]
-    verdicts, more = judged(modes, len(found.modes), tails, fits, spreads, shaper, doubt > 0.0)
+    verdicts, more = judged(modes, len(found.modes), tails, fits, stops, shaper)
     trouble += more
     window = length if window is None else min(positive("window", window, "s"), length)
     if below is not None:
@@ -176,17 +177,19 @@ def _check_alike(recordings: Sequence[tuple[str, TimeSeries]]) -> None:
             )
 
 
-def _stops(stop: float | tuple[float, float] | None) -> tuple[float | None, float | None]:
+def _stops(stop: float | tuple[float, float] | None) -> tuple[float, float] | None:
+    if stop is None:
+        return None
     pair = stop if isinstance(stop, tuple) else (stop, stop)
-    if len(pair) != 2 or not all(one is None or np.isfinite(one) for one in pair):
+    if len(pair) != 2 or not all(np.isfinite(one) for one in pair):
         raise InputError(f"stop {stop!r} is no time: give seconds, or a pair of them for before and after.")
     return pair
 
 
-def _tails(side: Sequence[tuple[str, TimeSeries]], motions: Sequence[Motion]) -> list[Tail]:
+def _tails(side: Sequence[tuple[str, TimeSeries]], motions: Sequence[Motion], guard: float) -> list[Tail]:
     tails = []
     for (name, series), motion in zip(side, motions, strict=True):
-        first = max(int(np.ceil((motion.stop - series.start) * series.sample_rate - 1e-9)), 0)
+        first = max(int(np.ceil((motion.stop + guard - series.start) * series.sample_rate - 1e-9)), 0)
         values = series.values[:, first:]
         if motion.stop < series.start - EARLIEST:
             raise InputError(
