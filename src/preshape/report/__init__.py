@@ -103,7 +103,6 @@ __all__ = [
     "as_svg",
     "calibration_document",
     "calibration_figure",
-    "calibration_page",
     "campaign_figure",
     "can_make_pdf",
     "candidate_table",
