@@ -51,7 +51,7 @@ def server() -> Iterator[Server]:
     started.stop()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")  # an event loop runs as long as it does, and other modules' tests have their own
 def browser() -> Iterator[Browser]:
     needed("chromium")
     expect.set_options(timeout=WAIT)

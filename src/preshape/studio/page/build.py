@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from preshape.errors import InputError
 from preshape.studio.page import frame
-from preshape.studio.page.compute import VIEW_TIME
+from preshape.studio.page.compute import FAILURES, VIEW_TIME, told
 from preshape.studio.page.deeds import DEEDS
 from preshape.studio.page.fields import sentence
 from preshape.studio.page.measurements import Measurements
 from preshape.studio.page.panels import PANELS, written
 from preshape.studio.page.plots import CHARTS, TRADE_OFF
 from preshape.studio.page.session import Session
+from preshape.studio.page.shared import Shared
 from preshape.studio.workers import Overdue
 from preshape.workflow.workbench import from_text, view_of
 
@@ -49,8 +50,8 @@ def build(app: FastAPI, studio: Studio) -> None:
     from fastapi.staticfiles import StaticFiles
     from nicegui import background_tasks, ui
 
-    measurements = Measurements(studio.workers, studio.largest_upload)
-    measurements.serve(app)
+    shared = Shared(studio.workers, Measurements(studio.workers, studio.largest_upload))
+    shared.measurements.serve(app)
     app.mount(STATIC, StaticFiles(directory=str(files("preshape.studio.page") / "static")))
 
     @ui.page("/", title="preshape studio", favicon=frame.ICON, response_timeout=60.0)
@@ -61,7 +62,7 @@ def build(app: FastAPI, studio: Studio) -> None:
                 bench = from_text(s)
             except InputError as error:
                 trouble = sentence(str(error))
-        session = Session(bench, studio.workers, measurements, m[:64])
+        session = Session(bench, shared, m[:64])
         await _open(client, session, trouble)
         if not s and studio.dropped is not None:
             # Its modes are the workbench's already; its spectrum comes when it is read.
@@ -74,7 +75,7 @@ async def _open(client: Client, session: Session, trouble: str) -> None:
     """Write the page, tell it its first picture, and listen to it."""
     from nicegui import background_tasks, ui
 
-    drawing = asyncio.ensure_future(session.compute.run(VIEW_TIME, view_of, session.workbench))
+    drawing = asyncio.ensure_future(session.shared.compute.run(VIEW_TIME, view_of, session.workbench))
     done, _ = await asyncio.wait([drawing], timeout=FIRST_PICTURE)
     message: dict[str, Any] = {}
     if done and drawing.exception() is None:
@@ -144,14 +145,14 @@ async def _heard(session: Session, deed: Callable[..., Awaitable[None]], event: 
     values = event.args if isinstance(event.args, list) else []
     try:
         await deed(session, *(str(value) for value in values))
-    except (InputError, Overdue) as error:
-        session.say({"say": sentence(str(error))})
+    except FAILURES as error:
+        session.say({"say": told(error)})
 
 
 async def _show_dropped(session: Session, name: str, content: bytes) -> None:
     """Show the measurement that the studio was opened with."""
     try:
-        session.show_measurement(await session.measurements.read(content, name))
+        session.show_measurement(await session.shared.measurements.read(content, name))
     except (InputError, Overdue) as error:
         session.show_measurement("", str(error))
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-import asyncio
+import logging
 from collections.abc import Callable
 from typing import ParamSpec, Protocol, TypeVar
+
+from preshape.errors import InputError
+from preshape.studio.page.fields import sentence
+from preshape.studio.workers import Overdue
 
 __all__ = [
     "EXPORT_TIME",
@@ -13,8 +17,9 @@ __all__ = [
     "TRADE_OFF_PATIENCE",
     "TRADE_OFF_TIME",
     "VIEW_TIME",
+    "FAILURES",
     "Compute",
-    "slow_lane",
+    "told",
 ]
 
 P = ParamSpec("P")
@@ -31,19 +36,21 @@ EXPORT_TIME = 20.0
 REPORT_TIME = 120.0
 
 
+FAILURES = (InputError, Overdue, RuntimeError)
+"""What may come instead of a result: a refusal, a job that took too long, or a fault of ours."""
+
+
+def told(failure: Exception) -> str:
+    """What the user is told; a fault goes to the log, with its trace."""
+    if isinstance(failure, (InputError, Overdue)):
+        return sentence(str(failure))
+    logging.getLogger(__name__).error("a job of the studio failed: %s", failure)
+    return "This failed within preshape; the state is kept, and the terminal shows what to report."
+
+
 class Compute(Protocol):
     """Runs functions beside the event loop: :class:`preshape.studio.workers.Workers`."""
 
     async def run(self, seconds: float, function: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """What the function returns; InputError as it does, or if it takes longer."""
         ...
-
-
-_queue: list[asyncio.Semaphore] = []
-
-
-def slow_lane() -> asyncio.Semaphore:
-    """Exports and trade-offs wait for one another, so that pictures always find someone free."""
-    if not _queue:
-        _queue.append(asyncio.Semaphore(1))
-    return _queue[0]

@@ -82,7 +82,7 @@ async def download(session: Session) -> None:
     """The export's file."""
     from nicegui import ui
 
-    package = await session.compute.run(EXPORT_TIME, packaged_for, session.workbench, session.export)
+    package = await session.shared.compute.run(EXPORT_TIME, packaged_for, session.workbench, session.export)
     ui.download.content(package.content, package.name)
 
 
@@ -93,7 +93,9 @@ async def report(session: Session, kind: str) -> None:
     if kind not in ("html", "pdf"):
         raise InputError(f"a report is html or pdf, not {kind[:10]!r}.")
     session.say({"say": "The report is being written …"})
-    content = await session.compute.run(REPORT_TIME, _reported, session.workbench, session.active, session.export, kind)
+    content = await session.shared.compute.run(
+        REPORT_TIME, _reported, session.workbench, session.active, session.export, kind
+    )
     ui.download.content(content, f"preshape_report_{session.active}.{kind}")
 
 

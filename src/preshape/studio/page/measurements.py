@@ -7,7 +7,7 @@ from collections import OrderedDict
 from typing import TYPE_CHECKING
 
 from preshape.errors import InputError
-from preshape.studio.page.compute import FILE_TIME, Compute
+from preshape.studio.page.compute import FILE_TIME, Compute, told
 from preshape.studio.workers import Overdue
 from preshape.workflow.workbench import Measured, measured
 
@@ -57,13 +57,15 @@ class Measurements:
             async for part in request.stream():
                 size += len(part)
                 if size > self.largest:
-                    told = f"The file has more than {self.largest / 1e6:g} MB: cut the part that holds the vibration."
-                    return JSONResponse({"trouble": told}, status_code=413)
+                    limit = f"The file has more than {self.largest / 1e6:g} MB: cut the part that holds the vibration."
+                    return JSONResponse({"trouble": limit}, status_code=413)
                 parts.append(part)
             try:
                 key = await self.read(b"".join(parts), name[:200])
             except (InputError, Overdue) as error:
                 return JSONResponse({"trouble": str(error)})
+            except RuntimeError as failure:
+                return JSONResponse({"trouble": told(failure)})
             return JSONResponse({"key": key})
 
         # Annotations are text here, and the framework looks them up among the module's names.

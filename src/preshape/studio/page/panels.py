@@ -32,7 +32,7 @@ def written(session: Session, name: str) -> str:
     """One panel as HTML."""
     bench = session.workbench
     if name == "drop":
-        return drop_zone(session.measured, ADDRESS, session.measurements.largest, session.drop_trouble)
+        return drop_zone(session.measured, ADDRESS, session.shared.measurements.largest, session.drop_trouble)
     if name == "modes":
         return modes_panel(bench)
     if name == "designs":

@@ -8,17 +8,22 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from preshape.errors import InputError
 from preshape.studio.page import panels
-from preshape.studio.page.compute import EXPORT_TIME, TRADE_OFF_PATIENCE, TRADE_OFF_TIME, VIEW_TIME, Compute, slow_lane
+from preshape.studio.page.axis import axis_end
+from preshape.studio.page.compute import (
+    EXPORT_TIME,
+    FAILURES,
+    TRADE_OFF_PATIENCE,
+    TRADE_OFF_TIME,
+    VIEW_TIME,
+    told,
+)
 from preshape.studio.page.edits import edited, fields_of
 from preshape.studio.page.export_panel import ExportChoice, export_preview
-from preshape.studio.page.fields import sentence
 from preshape.studio.page.history import History
-from preshape.studio.page.measurements import Measurements
 from preshape.studio.page.plots import TRADE_OFF, Picture
+from preshape.studio.page.shared import Shared
 from preshape.studio.page.wire import Sent
-from preshape.studio.workers import Overdue
 from preshape.workflow.workbench import (
     Measured,
     View,
@@ -41,9 +46,6 @@ SHORT_QUIET, QUIET = 0.25, 1.0
 TOGETHER = 2.0
 """Edits of one field within so many seconds are one step of undo."""
 
-ROUND = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
-"""Where axes end."""
-
 Message = dict[str, Any]
 
 
@@ -54,20 +56,15 @@ class Session:
     ----------
     workbench : Workbench
         What the link held, or the first one.
-    compute : Compute
-        Who computes.
-    measurements : Measurements
-        The server's.
+    shared : Shared
+        What all pages of the server share.
     measurement : str
         Key of the measurement in the link; empty if there is none.
     """
 
-    def __init__(
-        self, workbench: Workbench, compute: Compute, measurements: Measurements, measurement: str = ""
-    ) -> None:
-        self.compute = compute
+    def __init__(self, workbench: Workbench, shared: Shared, measurement: str = "") -> None:
+        self.shared = shared
         self.history = History(workbench)
-        self.measurements = measurements
         self.measurement = measurement
         self.export = ExportChoice(design=workbench.designs[0].name)
         self.active = workbench.designs[0].name
@@ -94,12 +91,12 @@ class Session:
     @property
     def measured(self) -> Measured | None:
         """What was dropped, while the server holds it."""
-        return self.measurements.get(self.measurement) if self.measurement else None
+        return self.shared.measurements.get(self.measurement) if self.measurement else None
 
     def first(self, view: View) -> Message:
         """What a new page is told: everything that its HTML does not hold."""
         self.view = view
-        self._top = self._axis_end(held=False)
+        self._top = self._axis_end()
         return {
             "charts": {**self._sent.changes(self._picture()), **self._sent.trade_off(self._picture())},
             "handles": [mode.frequency for mode in view.workbench.modes],
@@ -119,12 +116,12 @@ class Session:
             new = edited(self.workbench, field, text)
             if field.startswith("design.") and not field.endswith(".family"):
                 # A wish that no shaper can meet is refused like a wrong number: the last good design stays.
-                await self.compute.run(VIEW_TIME, shaper_named, new, field.split(".")[1])
+                await self.shared.compute.run(VIEW_TIME, shaper_named, new, field.split(".")[1])
                 if self._last_edit != (field, now):
                     return None
                 new = edited(self.workbench, field, text)
-        except (InputError, Overdue) as error:
-            self.errors[field] = sentence(str(error))
+        except FAILURES as error:
+            self.errors[field] = told(error)
             return self.say({"errors": {**self.errors, **panels.troubles(self.view)}})
         self.errors.pop(field, None)
         same = now - self._changed_at < TOGETHER or how == "held"
@@ -153,7 +150,7 @@ class Session:
 
     def take_measurement(self, key: str) -> None:
         """Show a measurement that has come, and take its modes if they are clear."""
-        if self.measurements.get(key) is None:
+        if self.shared.measurements.get(key) is None:
             return
         self.measurement, self.drop_trouble = key, ""
         self.take_modes(only_clear=True)
@@ -178,7 +175,8 @@ class Session:
     def _moved_on(self, *, held: bool, forced: bool) -> None:
         self._changed_at = time.monotonic()
         self.trade_off = None
-        self._top = self._axis_end(held)
+        if not held:
+            self._top = self._axis_end()
         names = [design.name for design in self.workbench.designs]
         if self.active not in names:
             self.active = names[0]
@@ -200,9 +198,9 @@ class Session:
             while True:
                 wanted, since = self.workbench, self._changed_at
                 try:
-                    self.view = await self.compute.run(VIEW_TIME, view_of, wanted)
-                except (InputError, Overdue) as error:
-                    self.say({"status": sentence(str(error)), "link": to_text(wanted)})
+                    self.view = await self.shared.compute.run(VIEW_TIME, view_of, wanted)
+                except FAILURES as error:
+                    self.say({"status": told(error), "link": to_text(wanted)})
                     if self._changed_at == since:
                         return
                     continue
@@ -224,13 +222,13 @@ class Session:
         """Write the export's preview anew; some targets take longer than a picture."""
         wanted = (self.workbench, self.export)
         await asyncio.sleep(SHORT_QUIET)
-        async with slow_lane():
+        async with self.shared.slow:
             if wanted != (self.workbench, self.export):
                 return
             try:
-                html = await self.compute.run(EXPORT_TIME, panels.preview, *wanted)
-            except Overdue as error:
-                html = export_preview(None, str(error))
+                html = await self.shared.compute.run(EXPORT_TIME, panels.preview, *wanted)
+            except FAILURES as error:
+                html = export_preview(None, told(error))
         if wanted == (self.workbench, self.export):
             self.say({"html": {"preview": html}})
 
@@ -240,15 +238,15 @@ class Session:
         await asyncio.sleep(QUIET)
         if self._changed_at != since:
             return
-        async with slow_lane():
+        async with self.shared.slow:
             if self._changed_at != since:
                 return
             try:
-                found = await self.compute.run(
+                found = await self.shared.compute.run(
                     TRADE_OFF_TIME, trade_off_of, self.workbench, patience=TRADE_OFF_PATIENCE
                 )
-            except (InputError, Overdue) as error:
-                return self.say({"charts": {TRADE_OFF.name: {"note": sentence(str(error))}}})
+            except FAILURES as error:
+                return self.say({"charts": {TRADE_OFF.name: {"note": told(error)}}})
         if self._changed_at == since:
             self.trade_off = found
             self.say({"charts": self._sent.trade_off(self._picture())})
@@ -277,18 +275,12 @@ class Session:
             "errors": {**self.errors, **panels.troubles(self.view)},
         }
 
+    def _axis_end(self) -> float:
+        return axis_end(max(mode.frequency for mode in self.workbench.modes), self._top)
+
     def _picture(self) -> Picture:
         assert self.view is not None  # nothing is drawn before the first view
         return Picture(self.view, self._top, self.measured, self.trade_off)
-
-    def _axis_end(self, held: bool) -> float:
-        """End of the frequency axes: a round number above the modes, that stays while it still suits them."""
-        highest = max(mode.frequency for mode in self.workbench.modes)
-        # The curves of a view end at 1.6 times the highest mode: a round number that they reach.
-        if held or 0.63 * self._top <= highest <= 0.85 * self._top:
-            return self._top
-        size = 10.0 ** math.floor(math.log10(1.6 * highest))
-        return max(size * step for step in ROUND if size * step <= 1.6 * highest)
 
 
 def _soon(work: Any) -> None:
