@@ -92,7 +92,7 @@ class Basis:
             if self.size < 2 * sum(order + 1 for order in orders):  # they tell less apart than divided differences do
                 self.groups = near
                 self._with_exponentials(leads)
-        self.zero = max(FEASIBLE, 4.0 * math.sqrt(self.size) * self.rounding)
+        self.zero = max(FEASIBLE, 4.0 * math.sqrt(max(self.size, 1)) * self.rounding)
         """A distance below this counts as zero: the constraints can be met."""
 
     def _with_exponentials(self, leads: NDArray[np.float64]) -> None:
@@ -108,6 +108,9 @@ class Basis:
     def _with_series(self, leads: NDArray[np.float64]) -> None:
         self._functions = None
         series = orthonormal_series(self._rates, self.orders, self.duration)
+        if not series.size:  # nothing can be said with these numbers
+            self.size, self.rounding = 0, math.inf
+            return
         self._count = series.shape[1]
         self._derivative = chebyshev_derivative(self._count, self.duration)
         angles = 2.0 * np.arcsin(np.sqrt(leads / self.duration))

@@ -108,7 +108,7 @@ def shortest_positive(modes: Modes, orders: tuple[int, ...]) -> Shortest:
     """
     lengths = [(order + 1) * mode.damped_period / 2.0 for mode, order in zip(modes, orders, strict=True)]
     bracket = _bracketed(modes, orders, max(lengths), sum(lengths))
-    if not is_resolved(bracket.basis):
+    if bracket is None or not is_resolved(bracket.basis):
         return _unresolved(modes, orders)
     if not bracket.basis.groups and bracket.nearest.distance < DROWNED * bracket.basis.zero:
         return _drowned(bracket)
@@ -142,13 +142,18 @@ def proved(basis: Basis, polished: Polished) -> Shortest:
 
 def _bracketed(
     modes: Modes, orders: tuple[int, ...], longest: float, convolved: float, expected: float = math.inf
-) -> _Bracket:
-    """Search over the mesh: durations up to `longest` are too short, the `convolved` one is enough [s]."""
+) -> _Bracket | None:
+    """Search over the mesh: durations up to `longest` are too short, the `convolved` one is enough [s].
+
+    None where floating point does not hold the functions.
+    """
     fastest = max(mode.frequency for mode in modes)
     reach = ROOM * convolved
     for _ in range(MAXIMUM_REACHES):
         mesh = np.linspace(0.0, reach, math.ceil(MESH_PER_PERIOD * fastest * reach) + 8)
         basis = Basis(modes, orders, reach)
+        if not basis.size:
+            return None
         rows = basis(mesh)
         nearest, used = nearest_on_mesh(basis, mesh, rows, np.arange(0, mesh.size, COARSE))
         if nearest.feasible:

@@ -41,9 +41,13 @@ def orthonormal_series(rates: NDArray[np.complex128], orders: tuple[int, ...], d
     Returns
     -------
     ndarray, shape (row, coefficient)
-        At most 2 sum_j (order_j + 1) rows, orthonormal as vectors.
+        At most 2 sum_j (order_j + 1) rows, orthonormal as vectors; none where a function falls by more than floating
+        point holds.
     """
-    real, imaginary = _exponentials(rates * (duration / 2.0))
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        real, imaginary = _exponentials(rates * (duration / 2.0))
+    if not (np.isfinite(real.high).all() and np.isfinite(imaginary.high).all()):
+        return np.empty((0, 1))
     parts: list[DoubleDouble] = []
     for part in (real, imaginary):
         for j, order in enumerate(orders):

@@ -62,7 +62,7 @@ def _draw(figure: Figure, axes: Axes, panel: CampaignPanel) -> None:
             axes.plot(x, y, color=colour, linestyle=line, linewidth=width, label=name)
         if panel.logarithmic:
             axes.set_xscale("log")
-        if not _varies(np.concatenate([y for _, _, y in panel.curves])):  # an axis of its rounding would say that it does
+        if not _varies(np.concatenate([y for _, _, y in panel.curves])):  # its rounding would fill the axis
             middle = float(np.nanmean(panel.curves[0][2]))
             axes.set_ylim(min(0.0, 2.0 * middle), max(0.0, 2.0 * middle) or 1.0)
         if len(panel.curves) > 1:
