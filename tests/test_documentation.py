@@ -87,6 +87,7 @@ def test_console_lines_are_accepted(line: str, tmp_path: Path, monkeypatch: pyte
     (tmp_path / "report.html").write_text(as_html(asked_design_report(job, designed(job))))
     for name, shaper in (("before.csv", None), ("after.csv", preshape.design.zvd((46.0, 0.06)))):
         (tmp_path / name).write_text(klipper_text(recording(shaper)[0]))
+    monkeypatch.setattr("preshape.studio.server.serve", lambda app, listening, opened: None)  # for ever otherwise
     result = CliRunner().invoke(command_line, shlex.split(line)[1:], catch_exceptions=False)
     assert result.exit_code == 0, result.output
 
