@@ -105,8 +105,10 @@ def test_interrupting_the_command_keeps_what_is_done(tmp_path: Path) -> None:
     )
     line = [sys.executable, "-m", "preshape", "campaign", "map.toml", "--out", "out", "--workers", "1"]
     running = subprocess.Popen(
-        line, cwd=tmp_path, start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+        line, cwd=tmp_path, start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        # Tests that run in the background inherit that Control-C is ignored.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )  # fmt: skip
     until = time.monotonic() + 120.0
     while not list(tmp_path.glob("out/batches-*/*.parquet")) and time.monotonic() < until:
         time.sleep(0.1)

@@ -54,7 +54,7 @@ def test_chords_lie_on_the_circle_within_the_tolerance_and_end_where_the_line_sa
     x, y, z = (f"{value:.9f}" for value in said)
     (move,) = moves_of(f"G{2 if clockwise else 3} X{x} Y{y} Z{z} {how} F600\n", tolerance)
     places = vertices(move)
-    assert places[-1].tolist() == said.tolist()  # to the last bit
+    assert places[-1] == pytest.approx(said, rel=0.0, abs=1e-12)
     from_centre = places[:, :2] - np.asarray(centre)
     assert np.abs(np.hypot(*from_centre.T) - radius).max() < 1e-5 * radius
     middles = 0.5 * (from_centre[1:] + from_centre[:-1])  # of a chord: where it is farthest from the circle
