@@ -12,7 +12,7 @@ from scipy.stats import binom
 from tests.workflow.random_machines import Pair, draw
 
 from preshape.errors import InputError
-from preshape.report import DOUBTFUL, LESS, MORE
+from preshape.report import DOUBTFUL, LESS, MORE, Verification
 from preshape.workflow import verify
 
 LATE = 0.006
@@ -25,9 +25,17 @@ WAYS: dict[str, Callable[[Pair], dict[str, Any]]] = {
 }
 
 
+def holds_the_window(result: Verification, number: int) -> bool:
+    """Whether the ratio of the root mean squares holds that of the same window without noise, at the true stops."""
+    quiet = draw(11, number, 1e-5)
+    begins = (quiet.stops[0] + result.wait, quiet.stops[1] + result.wait)
+    truth = verify(quiet.before, quiet.after, stop=begins, window=result.window, below=result.below).ratio[-1].value
+    return result.ratio[-1].low <= truth <= result.ratio[-1].high
+
+
 @pytest.mark.parametrize("way", WAYS)
 def test_intervals_of_a_ratio_hold_the_truth(way: str) -> None:
-    judged = held = false = 0
+    judged = held = false = windows = 0
     for number in range(14):
         pair = draw(11, number, 0.01)
         result = verify(pair.before, pair.after, shaper=pair.told, **WAYS[way](pair))
@@ -37,12 +45,14 @@ def test_intervals_of_a_ratio_hold_the_truth(way: str) -> None:
                 judged += 1
                 held += one.ratio.low <= pair.truth(mode) <= one.ratio.high
                 false += one.verdict in (LESS, MORE)
+        windows += way == "found" and holds_the_window(result, number)
         off = abs(result.unshaped[0].stop - pair.stops[0])
         if way == "found" and off > 2.0 * result.unshaped[0].stop_spread:
             assert any("stop was not found" in one for one in result.trouble)
     assert judged >= 14
     assert held >= binom.ppf(0.001, judged, 0.95)
     assert false <= binom.ppf(0.999, judged, 0.05)
+    assert way != "found" or windows >= binom.ppf(0.001, 14, 0.93)
 
 
 def test_without_the_shaper_stops_that_were_found_are_not_believed() -> None:

@@ -20,7 +20,7 @@ def verification_screen(verification: Verification) -> None:
     if verification.modes:
         unit = f" [{verification.unit}]" if verification.unit else ""
         screen.print(_drawn(f"\nModes, amplitude at the stop{unit}", verification_table(verification)))
-    title = f"\nRoot mean square, {1e3 * verification.window:.3g} ms after the stop, below {verification.below:.3g} Hz"
+    title = f"\nRoot mean square after the stop, {verification.stretch}, below {verification.below:.3g} Hz"
     screen.print(_drawn(title, residual_table(verification)))
     if verification.floor is not None:
         screen.print(f"Noise before the move, all axes and frequencies: {verification.floor:.3g} {verification.unit}")

@@ -116,8 +116,9 @@ class Verification:
         Names of the axes; the last row of the residuals, "total", is over all of them.
     before, after, ratio : tuple of Estimate
         Root mean square after the stop for each axis and in total, in `unit`, and its ratio [-].
-    window, below : float
-        Time after the stop over which [s], and frequency up to which [Hz], the root mean square is taken.
+    wait, window, below : float
+        Time after the stop from which on, time over which [s], and frequency up to which [Hz] the root mean square is
+        taken.
     floor : float or None
         Root mean square of the noise before the move, over all axes; None where it is not recorded.
     unit : str
@@ -133,6 +134,7 @@ class Verification:
     before: tuple[Estimate, ...]
     after: tuple[Estimate, ...]
     ratio: tuple[Estimate, ...]
+    wait: float
     window: float
     below: float
     floor: float | None
@@ -154,7 +156,7 @@ class Verification:
         text = "Not to be trusted before the stop is given. " if doubtful else ""
         text += (
             f"With the shaper {percent(total)} of the vibration after the stop is left "
-            f"(root mean square over {1e3 * self.window:.3g} ms, all axes)"
+            f"(root mean square over {self.stretch}, all axes)"
         )
         known = [one for one in self.modes if not one.new]
         for verdict in dict.fromkeys(one.verdict for one in known):
@@ -165,12 +167,18 @@ class Verification:
             text += f"; new with the shaper: {named}"
         return text + "."
 
+    @property
+    def stretch(self) -> str:
+        """The window in words."""
+        return f"{1e3 * self.window:.3g} ms" + (f" from {1e3 * self.wait:.2g} ms on" if self.wait > 0.0 else "")
+
     def to_dict(self) -> dict[str, Any]:
         """All numbers, for JSON; the samples themselves are left out."""
         rows = zip((*self.axes, "total"), self.before, self.after, self.ratio, strict=True)
         return {
             "sentence": self.sentence,
             "unit": self.unit,
+            "wait": self.wait,
             "window": self.window,
             "below": self.below,
             "floor": self.floor,

@@ -69,6 +69,12 @@ class Stops:
     doubtful: bool
     trouble: tuple[str, ...]
 
+    @property
+    def spread(self) -> float:
+        """Standard deviation of the stops [s]; infinite where that is too much for a window that begins at them."""
+        largest = max(motion.spread for motion in (*self.before, *self.after))
+        return math.inf if self.doubtful or largest > VAGUE else largest
+
 
 def find_stops(
     before: Named,

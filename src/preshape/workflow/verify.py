@@ -15,14 +15,14 @@ from preshape.checks import positive
 from preshape.errors import InputError
 from preshape.identify import IdentifiedMode, TimeSeries
 from preshape.mode import Mode
-from preshape.report import Estimate, Ringing, Verification
+from preshape.report import Ringing, Verification
 from preshape.shaper import Shaper
 from preshape.workflow.mode_verdicts import judged, unmatched
 from preshape.workflow.move_stops import find_stops
-from preshape.workflow.ratio_interval import ratio_interval
-from preshape.workflow.ring_amplitudes import NORMAL_95, RingFit, Tail, band_power, fit_ringing
+from preshape.workflow.ring_amplitudes import RingFit, Tail, fit_ringing
 from preshape.workflow.stop_time import Motion
 from preshape.workflow.verification_trouble import comparison_trouble, move_trouble
+from preshape.workflow.window_residuals import window_residuals
 
 __all__ = ["verify"]
 
@@ -70,8 +70,8 @@ def verify(
     lasting : float, optional
         How long the unshaped move takes [s], as the recipe says: the stop is then so long after the beginning.
     window : float, optional
-        Time after the stop over which the root mean square is taken [s]; all that is recorded, up to six time
-        constants of the slowest mode, unless given.
+        Time over which the root mean square is taken [s]; all that is recorded, up to six time constants of the slowest
+        mode, unless given. It begins at the stop, or where that was found, `wait` after it, when it is surely over.
     below : float, optional
         Frequency up to which it is taken [Hz]; twice the highest mode's unless given.
 
@@ -93,7 +93,9 @@ def verify(
     (95 %): an amplitude's is that of a noncentral chi square, with the spectrum of what the fit leaves as noise; with
     three repeats or more at least Student's of their spread. A ratio's combines both (see
     :func:`preshape.workflow.ratio_interval.ratio_interval`) and adds, in quadrature, what the poles' and the stops'
-    uncertainty do to it. A prediction's is the range over the intervals of frequency and damping.
+    uncertainty do to it, and what looking later changes beyond the noise: modes that nobody has fitted. A prediction's
+    is the range over the intervals of frequency and damping. The ratio of the root mean squares is open where the stop
+    is not known to 3 ms.
 
     Examples
     --------
@@ -134,15 +136,15 @@ def verify(
         below = positive("below", below, "Hz")
     else:
         below = HIGHEST * max([one.mode.frequency for one in modes], default=everything[0][1].sample_rate)
-    residuals = [_residuals(side, fit, window, below) for side, fit in zip(tails, fits, strict=True)]
-    ratios = tuple(Estimate(*ratio_interval(_plain(a), _plain(b))) for b, a in zip(*residuals, strict=True))
+    residuals = window_residuals(tails, fits, [one.mode for one in modes], window, below, stops.spread)
     floors = [float(np.sum(m.floor**2)) for side in motions for m in side if m.floor is not None]
     return Verification(
         modes=verdicts,
         axes=everything[0][1].channels,
         before=residuals[0],
         after=residuals[1],
-        ratio=ratios,
+        ratio=residuals[2],
+        wait=stops.guard,
         window=window,
         below=below,
         floor=float(np.sqrt(np.mean(floors))) if floors else None,
@@ -228,33 +230,6 @@ def _length(tails: Sequence[Sequence[Tail]], modes: Sequence[IdentifiedMode]) ->
 
 def _decay(mode: Mode) -> float:
     return float(mode.damping * mode.omega)
-
-
-def _residuals(tails: Sequence[Tail], fits: Sequence[RingFit], window: float, below: float) -> tuple[Estimate, ...]:
-    """Root mean square of each axis and in total, over the repeats."""
-    found = [
-        band_power(fit, tail, max(round(window * tail.rate), 2), below) for tail, fit in zip(tails, fits, strict=True)
-    ]
-    power = np.mean([one for one, _ in found], axis=0)
-    variance = np.mean([one for _, one in found], axis=0) / len(found)
-    rows = [*zip(power, variance, strict=True), (float(power.sum()), float(variance.sum()))]
-    spread = np.array([[*one, one.sum()] for one, _ in found])
-    return tuple(_root(p, v, spread[:, k]) for k, (p, v) in enumerate(rows))
-
-
-def _root(power: float, variance: float, each: _Array) -> Estimate:
-    half = NORMAL_95 * float(np.sqrt(variance))
-    if each.size > 2:
-        from scipy.stats import t as student
-
-        deviation = float(np.std(each, ddof=1)) / np.sqrt(each.size)
-        half = max(half, float(student.ppf(0.975, each.size - 1)) * deviation)
-    low, high = np.sqrt(max(power - half, 0.0)), np.sqrt(power + half)
-    return Estimate(float(np.sqrt(power)), float(low), float(high))
-
-
-def _plain(estimate: Estimate) -> tuple[float, float, float]:
-    return estimate.value, estimate.low, estimate.high
 
 
 def _ringings(
