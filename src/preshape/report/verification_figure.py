@@ -16,9 +16,6 @@ if TYPE_CHECKING:
 
 __all__ = ["verification_figure"]
 
-SHOWN_ABOVE = 2.0
-"""The frequency axis ends at this multiple of the highest mode."""
-
 SIDES = ((SECOND, "--", 1.3, "without the shaper"), (ACCENT, "-", 1.9, "with the shaper"))
 """Colour, line, width and name: told apart in grey print by the line and by its lightness."""
 
@@ -65,8 +62,7 @@ def _times(axes: Axes, verification: Verification) -> None:
 
 
 def _spectra(axes: Axes, verification: Verification) -> None:
-    highest = max([one.mode.mode.frequency for one in verification.modes], default=verification.below)
-    high = SHOWN_ABOVE * highest
+    high = verification.below  # what the root mean square counts
     top = 0.0
     for side, (colour, line, width, name) in zip(_sides(verification), SIDES, strict=True):
         for number, one in enumerate(side):
