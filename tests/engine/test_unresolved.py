@@ -11,6 +11,7 @@ from preshape import Modes, design
 from preshape.engine import convolved_positive, is_proved_shortest, shortest_positive
 from preshape.engine.basis import Basis
 from preshape.engine.unresolved import halves, is_resolved, thinned
+from preshape.errors import InputError
 from preshape.vibration import residual_vibration
 
 SEVERAL = Modes([(3.0, 0.1), (1.0, 0.0), (2.0, 0.05), (1.1, 0.0), (5.0, 0.2)])
@@ -103,3 +104,12 @@ def test_modes_that_floating_point_does_not_hold_together_are_solved_apart(seed:
     shaper = design.direct(pairs, 1)
     assert shaper.duration < design.zvd(pairs).duration
     assert max(residual_vibration(shaper, *pair) for pair in pairs) < 1e-12
+
+
+def test_functions_that_floating_point_does_not_hold_are_refused_in_a_sentence() -> None:
+    pairs = zip(np.geomspace(150.0, 90e3, 10), np.random.default_rng(4).uniform(0.3, 0.9, 10), strict=True)
+    modes = Modes(list(pairs))
+    basis = Basis(modes, (1,) * 10, 0.05, ())
+    assert basis.size == 0 and not is_resolved(basis)
+    with pytest.raises(InputError, match="floating point holds: leave out the fastest"):
+        basis(np.zeros(1))

@@ -16,6 +16,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from preshape.errors import InputError
 from preshape.kernel import (
     DividedExponentials,
     chebyshev_derivative,
@@ -108,10 +109,10 @@ class Basis:
     def _with_series(self, leads: NDArray[np.float64]) -> None:
         self._functions = None
         series = orthonormal_series(self._rates, self.orders, self.duration)
-        if not series.size:  # nothing can be said with these numbers
+        self._count = series.shape[1] if series.size else 0
+        if not series.size:  # nothing can be said with these numbers, and whoever asks for the functions is told
             self.size, self.rounding = 0, math.inf
             return
-        self._count = series.shape[1]
         self._derivative = chebyshev_derivative(self._count, self.duration)
         angles = 2.0 * np.arcsin(np.sqrt(leads / self.duration))
         self._orthonormalise(self.raw(leads), series, 1.0 + np.multiply.outer(np.arange(self._count), angles))
@@ -138,12 +139,20 @@ class Basis:
 
     def __call__(self, leads: NDArray[np.float64]) -> NDArray[np.float64]:
         """g at `leads` [s], shape (row, lead)."""
-        values: NDArray[np.float64] = self._transform @ self.raw(leads)
+        raw = self.raw(leads)
+        values: NDArray[np.float64] = self._transform @ raw
         return values
 
     def raw(self, leads: NDArray[np.float64]) -> NDArray[np.float64]:
         """The functions that g combines, shape (function, lead): exponentials, real parts first, or polynomials."""
         if self._functions is None:
+            if not self._count:
+                slowest = min(mode.frequency for mode in self.modes)
+                raise InputError(
+                    f"modes of {slowest:g} to {self._fastest:g} Hz, damped as these are, fall by more within "
+                    f"{self.duration:g} s than floating point holds: leave out the fastest, or design them apart and "
+                    "convolve."
+                )
             return chebyshev_values(leads, self.duration, self._count)
         values = self._functions(leads)
         return np.concatenate([values.real, values.imag])
